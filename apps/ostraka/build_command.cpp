@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "ostraka/base/stopwatch.hpp"
+#include "ostraka/library/build.hpp"
+#include "ostraka/library/library_file.hpp"
+
+namespace ostraka::app {
+namespace {
+
+struct BuildOptions {
+    CommonOptions common;
+    std::vector<std::string> models;
+    std::string output;
+    std::string unit;
+    std::string fractions;
+    std::string descriptors;
+    LibrarySettings settings;
+};
+
+std::vector<AnyDescriptor> parse_descriptors(const std::string& text) {
+    std::vector<AnyDescriptor> descriptors;
+    std::string name;
+    for (const char c : text + ",") {
+        if (c != ',' && c != ' ') {
+            name += c;
+            continue;
+        }
+        if (name.empty()) continue;
+        const auto descriptor = parse_descriptor(name);
+        if (!descriptor) {
+            throw CLI::ValidationError("--descriptors", "there is no descriptor " + name);
+        }
+        descriptors.push_back(*descriptor);
+        name.clear();
+    }
+    return descriptors;
+}
+
+std::string size_hint(const std::vector<ModelSource>& models) {
+    double least = measure(models.front().mesh).diameter;
+    double most = least;
+    for (const ModelSource& model : models) {
+        const double diameter = measure(model.mesh).diameter;
+        least = std::min(least, diameter);
+        most = std::max(most, diameter);
+    }
+    return fmt::format("the models measure {:.4g} to {:.4g} units across", least, most);
+}
+
+void say_summary(const ModelLibrary& library) {
+    std::vector<std::vector<std::string>> rows = {{"model", "diameter", "views", "cuts", "too small",
+                                                   "redundant", "beyond budget", "kept",
+                                                   "coverage"}};
+    for (const Model& model : library.models) {
+        const BuildCounts& c = model.counts;
+        rows.push_back({model.name,
+                        fmt::format("{:.4g} {}", model.shape.diameter,
+                                    unit_name(library.settings.unit)),
+                        std::to_string(c.views), std::to_string(c.cuts), std::to_string(c.too_small),
+                        std::to_string(c.redundant), std::to_string(c.beyond_budget),
+                        std::to_string(c.kept), fmt::format("{:.3f}", c.coverage)});
+    }
+    say_table(rows);
+}
+
+Json summary_json(const ModelLibrary& library, const std::string& file, double seconds) {
+    Json models = Json::array();
+    for (const Model& model : library.models) {
+        const BuildCounts& c = model.counts;
+        models.push_back({{"model", model.name},
+                          {"diameter", model.shape.diameter},
+                          {"views", c.views},
+                          {"subparts_made", c.cuts},
+                          {"dropped_too_small", c.too_small},
+                          {"dropped_redundant", c.redundant},
+                          {"dropped_beyond_budget", c.beyond_budget},
+                          {"kept", c.kept},
+                          {"coverage", c.coverage}});
+    }
+    return {{"library", file},
+            {"unit", unit_name(library.settings.unit)},
+            {"sampling", library.settings.sampling},
+            {"entries", library.entries.size()},
+            {"models", models},
+            {"seconds", seconds}};
+}
+
+void run_build(BuildOptions& options) {
+    catch_interrupts();
+    const Stopwatch watch;
+    LibrarySettings& settings = options.settings;
+    if (!options.fractions.empty()) {
+        settings.cuts.fractions = parse_numbers(options.fractions, "--fractions");
+    }
+    if (!options.descriptors.empty()) settings.descriptors = parse_descriptors(options.descriptors);
+    std::vector<ModelSource> models;
+    for (const std::string& path : options.models) models.push_back(load_model(path));
+    settings.unit = require_unit(options.unit, size_hint(models));
+    settings.views.sensor.seed = settings.seed;
+    const ModelLibrary library = build_library(models, settings, progress_bar());
+    save_library(library, options.output);
+    say_summary(library);
+    say(fmt::format("{}: {} models, {} entries, sampling {:.4g} {}, {:.1f} MB, {:.1f} s",
+                    options.output, library.models.size(), library.entries.size(),
+                    library.settings.sampling, unit_name(library.settings.unit),
+                    double(std::filesystem::file_size(options.output)) / 1e6, watch.seconds()));
+    write_json(summary_json(library, options.output, watch.seconds()), options.common.json);
+}
+
+}  // namespace
+
+void add_build(CLI::App& app) {
+    auto options = std::make_shared<BuildOptions>();
+    CLI::App* command = app.add_subcommand("build", "make a library of CAD models");
+    command->add_option("models", options->models, "mesh files: PLY, OBJ, STL, OFF, glTF")
+        ->required();
+    command->add_option("-o,--output", options->output, "library file to write")->required();
+    add_unit(*command, options->unit, "unit of the numbers in the model files");
+    LibrarySettings& settings = options->settings;
+    command->add_option("--views", settings.views.count,
+                        "viewpoints around each model: 12, 20, 42, 80, 162, 320, 642")
+        ->capture_default_str();
+    command->add_option("--sampling", settings.sampling,
+                        "distance between points, in --unit (default: 1 % of the median diameter)");
+    command->add_option("--descriptors", options->descriptors,
+                        "comma-separated: vfh,esf,gasd,shot,rops (default: all)");
+    command->add_option("--directions", settings.cuts.directions, "cut directions: 6, 14 or 26")
+        ->capture_default_str();
+    command->add_option("--fractions", options->fractions,
+                        "shares of the length that cuts keep (default: 0.35,0.5,0.65,0.8)");
+    command->add_flag("--full-views-only", settings.full_views_only,
+                      "the traditional library: whole views, no subparts");
+    command->add_option("--budget", settings.selection.budget, "entries kept for each model")
+        ->capture_default_str();
+    command->add_option("--seed", settings.seed, "seed of every random step")->capture_default_str();
+    add_common(*command, options->common);
+    command->callback([options] { run_build(*options); });
+}
+
+}  // namespace ostraka::app

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// One function a subcommand: adds it, its options and what it runs.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace ostraka::app {
+
+void add_build(CLI::App& app);
+void add_recognize(CLI::App& app);
+void add_classify(CLI::App& app);
+void add_inspect(CLI::App& app);
+void add_views(CLI::App& app);
+void add_parts(CLI::App& app);
+void add_simulate(CLI::App& app);
+void add_evaluate(CLI::App& app);
+
+}  // namespace ostraka::app

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "ostraka/base/stopwatch.hpp"
+#include "ostraka/io/cloud_file.hpp"
+#include "ostraka/library/library_file.hpp"
+#include "ostraka/recognition/recognize.hpp"
+
+namespace ostraka::app {
+namespace {
+
+struct RecognizeOptions {
+    CommonOptions common;
+    std::string library;
+    std::string scene;
+    std::string unit;
+    std::string viewpoint;
+    RecognitionSettings settings;
+};
+
+Json recognition_json(const Recognition& result, const std::string& scene, Unit unit, double factor) {
+    Json objects = Json::array();
+    for (const RecognizedObject& object : result.objects) {
+        objects.push_back({{"model", object.model},
+                           {"T_scene_model", pose_json(object.T_scene_model, factor)},
+                           {"confidence", object.confidence},
+                           {"visible_fraction", object.visible_fraction},
+                           {"inlier_rms", object.inlier_rms * factor},
+                           {"source", object.source}});
+    }
+    Json seconds = Json::object();
+    for (const auto& [stage, time] : result.seconds) seconds[stage] = time;
+    return {{"scene", scene}, {"unit", unit_name(unit)}, {"objects", objects}, {"seconds", seconds}};
+}
+
+void run_recognize(const RecognizeOptions& options) {
+    Stopwatch watch;
+    const ModelLibrary library = load_library(options.library);
+    const Recognizer recognizer(library);
+    const double load_seconds = watch.lap();
+    CloudFile file = read_cloud_file(options.scene);
+    if (const auto viewpoint = parse_viewpoint(options.viewpoint)) file.cloud.viewpoint = *viewpoint;
+    const Unit unit = parse_unit(options.unit).value_or(library.settings.unit);
+    const PointCloud scene = scaled(file.cloud, unit_factor(unit, library.settings.unit));
+    const double read_seconds = watch.lap();
+    Recognition result = recognizer.recognize(scene, options.settings);
+    result.seconds["load"] = load_seconds;
+    result.seconds["read"] = read_seconds;
+    const double factor = unit_factor(library.settings.unit, unit);
+    std::vector<std::vector<std::string>> rows = {
+        {"model", "confidence", "visible", fmt::format("rms {}", unit_name(unit)), "source"}};
+    for (const RecognizedObject& object : result.objects) {
+        rows.push_back({object.model, fmt::format("{:.3f}", object.confidence),
+                        fmt::format("{:.2f}", object.visible_fraction),
+                        fmt::format("{:.3g}", object.inlier_rms * factor), object.source});
+    }
+    say_table(rows);
+    std::string times;
+    for (const auto& [stage, time] : result.seconds) times += fmt::format(" {} {:.3f}", stage, time);
+    say("seconds:" + times);
+    write_json(recognition_json(result, options.scene, unit, factor), options.common.json);
+}
+
+}  // namespace
+
+void add_recognize(CLI::App& app) {
+    auto options = std::make_shared<RecognizeOptions>();
+    CLI::App* command = app.add_subcommand("recognize", "find the library's objects in a scan");
+    command->add_option("library", options->library, "library made by `ostraka build`")->required();
+    command->add_option("scene", options->scene, "scan: PLY, PCD, XYZ or TXT")->required();
+    add_unit(*command, options->unit, "unit of the numbers in the scan (default: the library's)");
+    add_viewpoint(*command, options->viewpoint);
+    command->add_option("--min-confidence", options->settings.min_confidence,
+                        "objects below it are not reported")
+        ->capture_default_str();
+    add_common(*command, options->common);
+    command->callback([options] { run_recognize(*options); });
+}
+
+}  // namespace ostraka::app

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/base/parallel.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+#include <mutex>
+
+namespace ostraka {
+
+void set_thread_count(int count) {
+    static std::mutex mutex;
+    static std::unique_ptr<tbb::global_control> control;
+    const std::scoped_lock lock(mutex);
+    control.reset();
+    if (count > 0) {
+        control = std::make_unique<tbb::global_control>(
+            tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
+    }
+}
+
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
+                  std::size_t grain) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+                      });
+}
+
+}  // namespace ostraka

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surface normals by plane fitting.
+// Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface Reconstruction from Unorganized Points. 1992.
+#pragma once
+
+#include "ostraka/cloud/kdtree.hpp"
+#include "ostraka/cloud/point_cloud.hpp"
+
+namespace ostraka {
+
+struct NormalSettings {
+    int neighbors = 20;  ///< points in each fit, the point itself included; at least 3
+};
+
+/// The normal of each point: the direction of least variance of its nearest neighbors, turned
+/// toward cloud.viewpoint.
+/// @param cloud  all points finite.
+/// @return one unit vector per point; NaN where the neighborhood has no unique plane (fewer than 3
+///         points, or all on a line).
+std::vector<Vec3f> estimate_normals(const PointCloud& cloud, const NormalSettings& settings = {});
+
+/// The same on a tree that exists already. @param tree over cloud.points.
+std::vector<Vec3f> estimate_normals(const PointCloud& cloud, const KdTree& tree,
+                                    const NormalSettings& settings = {});
+
+}  // namespace ostraka

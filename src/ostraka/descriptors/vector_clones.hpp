@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this module: functions compiled twice, for any x86-64 and for AVX2 machines, and
+// chosen when the program starts. Without contraction and reassociation both give the same bits.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+// Sanitizers can't run in the resolvers, which start before them.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define OSTRAKA_VECTOR_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
+#else
+#define OSTRAKA_VECTOR_CLONES
+#endif
+
+namespace ostraka {
+
+// Eight values side by side, for loops that compilers don't vectorize by themselves. Without AVX
+// they become pairs of SSE vectors. Only for local variables.
+using Float8 = float __attribute__((vector_size(32)));
+using Int8 = std::int32_t __attribute__((vector_size(32)));
+inline constexpr std::size_t kVectorLanes = 8;
+
+__attribute__((always_inline)) inline void load8(const float* from, Float8& to) {
+    std::memcpy(&to, from, sizeof(to));
+}
+
+}  // namespace ostraka

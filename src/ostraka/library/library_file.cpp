@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/library/library_file.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "ostraka/base/error.hpp"
+#include "ostraka/library/encoding.hpp"
+#include "ostraka/library/settings_text.hpp"
+#include "ostraka/library/sqlite.hpp"
+
+namespace ostraka {
+namespace {
+
+constexpr std::int64_t kApplicationId = 0x4f535452;  // "OSTR"
+constexpr std::size_t kShapeNumbers = 14;
+constexpr std::size_t kFrameNumbers = 15;
+
+constexpr const char* kSchema = R"sql(
+CREATE TABLE setting(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE model(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, file TEXT NOT NULL,
+    sha256 TEXT NOT NULL, vertices BLOB NOT NULL, triangles BLOB NOT NULL, shape BLOB NOT NULL,
+    surface BLOB NOT NULL, keypoint_points BLOB NOT NULL, keypoint_frames BLOB NOT NULL,
+    keypoint_rows BLOB NOT NULL, counts BLOB NOT NULL, coverage REAL NOT NULL);
+CREATE TABLE entry(id INTEGER PRIMARY KEY, model INTEGER NOT NULL REFERENCES model(id),
+    view INTEGER NOT NULL, direction INTEGER NOT NULL, fraction INTEGER NOT NULL,
+    viewpoint BLOB NOT NULL, frame BLOB NOT NULL, ambiguity INTEGER NOT NULL, points BLOB NOT NULL);
+CREATE TABLE descriptor(name TEXT NOT NULL, entry INTEGER NOT NULL REFERENCES entry(id),
+    row BLOB NOT NULL, PRIMARY KEY(name, entry)) WITHOUT ROWID;
+)sql";
+
+// Removes the temporary file unless it was put in place.
+class Temporary {
+  public:
+    explicit Temporary(const std::filesystem::path& target)
+        : target_(target), path_(target.string() + fmt::format(".tmp{}", ::getpid())) {
+        std::filesystem::remove(path_);
+    }
+    ~Temporary() {
+        std::error_code ignored;
+        std::filesystem::remove(path_, ignored);
+        std::filesystem::remove(path_.string() + "-journal", ignored);
+    }
+    Temporary(const Temporary&) = delete;
+    Temporary& operator=(const Temporary&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+    void put_in_place() {
+        std::error_code problem;
+        std::filesystem::rename(path_, target_, problem);
+        if (problem) throw FileError(target_, problem.message());
+    }
+
+  private:
+    std::filesystem::path target_;
+    std::filesystem::path path_;
+};
+
+template <class T>
+std::span<const T> as_span(const std::vector<T>& values) {
+    return values;
+}
+
+std::vector<float> flat(const std::vector<Vec3f>& vectors) {
+    std::vector<float> values;
+    values.reserve(3 * vectors.size());
+    for (const Vec3f& v : vectors) values.insert(values.end(), v.data(), v.data() + 3);
+    return values;
+}
+
+std::vector<Vec3f> unflat(const std::vector<float>& values) {
+    if (values.size() % 3 != 0) throw InvalidInput("coordinates don't come in threes");
+    std::vector<Vec3f> vectors(values.size() / 3);
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+        vectors[i] = Vec3f(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+        if (!vectors[i].allFinite()) throw InvalidInput(fmt::format("point {} is not finite", i));
+    }
+    return vectors;
+}
+
+std::vector<double> pack(const MeshShape& shape) {
+    std::vector<double> values(shape.center.data(), shape.center.data() + 3);
+    values.push_back(shape.radius);
+    values.push_back(shape.diameter);
+    values.insert(values.end(), shape.axes.data(), shape.axes.data() + 9);
+    return values;
+}
+
+void check_numbers(const std::vector<double>& values, std::size_t count) {
+    if (values.size() != count) {
+        throw InvalidInput(fmt::format("{} numbers instead of {}", values.size(), count));
+    }
+    for (const double value : values) {
+        if (!std::isfinite(value)) throw InvalidInput("a number is not finite");
+    }
+}
+
+MeshShape unpack_shape(const std::vector<double>& values) {
+    check_numbers(values, kShapeNumbers);
+    MeshShape shape;
+    shape.center = Vec3d(values.data());
+    shape.radius = values[3];
+    shape.diameter = values[4];
+    shape.axes = Mat3d(values.data() + 5);
+    if (!(shape.radius > 0.0 && shape.diameter > 0.0)) throw InvalidInput("a model has no size");
+    return shape;
+}
+
+std::vector<double> pack(const PrincipalFrame& frame) {
+    std::vector<double> values;
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) values.push_back(frame.T_cloud_frame(row, column));
+    }
+    for (int axis = 0; axis < 3; ++axis) values.push_back(frame.deviations[axis]);
+    return values;
+}
+
+PrincipalFrame unpack_frame(const std::vector<double>& values, std::int64_t ambiguity) {
+    check_numbers(values, kFrameNumbers);
+    PrincipalFrame frame;
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) {
+            frame.T_cloud_frame.matrix()(row, column) =
+                values[static_cast<std::size_t>(3 * column + row)];
+        }
+    }
+    frame.deviations = Vec3d(values.data() + 12);
+    frame.ambiguous_sign = (ambiguity & 1) != 0;
+    frame.ambiguous_order = (ambiguity & 2) != 0;
+    return frame;
+}
+
+void save_models(Database& database, const ModelLibrary& library) {
+    Statement insert(database, "INSERT INTO model VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?)");
+    for (std::size_t m = 0; m < library.models.size(); ++m) {
+        const Model& model = library.models[m];
+        std::vector<std::uint32_t> triangles;
+        for (const Triangle& t : model.mesh.triangles)
+            triangles.insert(triangles.end(), t.begin(), t.end());
+        std::vector<float> surface = flat(model.surface.points);
+        const std::vector<float> normals = flat(model.surface.normals);
+        surface.insert(surface.end(), normals.begin(), normals.end());
+        std::vector<float> frames;
+        for (const Mat3f& f : model.keypoints.frames)
+            frames.insert(frames.end(), f.data(), f.data() + 9);
+        const BuildCounts& c = model.counts;
+        const std::vector<std::int32_t> counts = {c.views,     c.cuts,          c.too_small,
+                                                  c.redundant, c.beyond_budget, c.kept};
+        insert.bind(1, static_cast<std::int64_t>(m));
+        insert.bind(2, model.name);
+        insert.bind(3, model.file);
+        insert.bind(4, model.sha256);
+        insert.bind_blob(5, as_span(flat(model.mesh.vertices)));
+        insert.bind_blob(6, as_span(triangles));
+        insert.bind_blob(7, as_span(pack(model.shape)));
+        insert.bind_blob(8, as_span(surface));
+        insert.bind_blob(9, as_span(flat(model.keypoints.points)));
+        insert.bind_blob(10, as_span(frames));
+        insert.bind_blob(11, as_span(model.keypoints.rows));
+        insert.bind_blob(12, as_span(counts));
+        insert.bind(13, c.coverage);
+        insert.step();
+        insert.reset();
+    }
+}
+
+void save_entries(Database& database, const ModelLibrary& library) {
+    Statement insert(database, "INSERT INTO entry VALUES(?,?,?,?,?,?,?,?,?)");
+    for (std::size_t i = 0; i < library.entries.size(); ++i) {
+        const Entry& entry = library.entries[i];
+        const MeshShape& shape = library.models[entry.model].shape;
+        std::vector<std::int16_t> points;
+        for (const Vec3f& point : entry.cloud.points) {
+            const EncodedPoint encoded = encode_point(point, shape);
+            points.insert(points.end(), encoded.begin(), encoded.end());
+        }
+        insert.bind(1, static_cast<std::int64_t>(i));
+        insert.bind(2, static_cast<std::int64_t>(entry.model));
+        insert.bind(3, static_cast<std::int64_t>(entry.view));
+        insert.bind(4, static_cast<std::int64_t>(entry.direction));
+        insert.bind(5, static_cast<std::int64_t>(entry.fraction));
+        insert.bind_blob(6, as_span(flat({entry.cloud.viewpoint})));
+        insert.bind_blob(7, as_span(pack(entry.frame)));
+        insert.bind(8, static_cast<std::int64_t>((entry.frame.ambiguous_sign ? 1 : 0) +
+                                                 (entry.frame.ambiguous_order ? 2 : 0)));
+        insert.bind_blob(9, as_span(points));
+        insert.step();
+        insert.reset();
+    }
+}
+
+void save_descriptors(Database& database, const ModelLibrary& library) {
+    Statement insert(database, "INSERT INTO descriptor VALUES(?,?,?)");
+    for (const DescriptorTable& table : library.tables) {
+        const std::size_t length = descriptor_length(table.descriptor);
+        const std::string name(descriptor_name(table.descriptor));
+        for (std::size_t i = 0; i < library.entries.size(); ++i) {
+            insert.bind(1, name);
+            insert.bind(2, static_cast<std::int64_t>(i));
+            insert.bind_blob(3, as_span(table.rows).subspan(i * length, length));
+            insert.step();
+            insert.reset();
+        }
+    }
+}
+
+Keypoints load_keypoints(const Statement& row, int column) {
+    Keypoints keypoints;
+    keypoints.points = unflat(row.blob<float>(column));
+    const std::vector<float> frames = row.blob<float>(column + 1);
+    keypoints.rows = row.blob<std::uint8_t>(column + 2);
+    if (frames.size() != 9 * keypoints.size() ||
+        keypoints.rows.size() != kShotLength * keypoints.size()) {
+        throw InvalidInput("keypoint columns differ in length");
+    }
+    for (std::size_t i = 0; i < keypoints.size(); ++i) {
+        keypoints.frames.emplace_back(frames.data() + 9 * i);
+        if (!keypoints.frames.back().allFinite()) throw InvalidInput("a frame is not finite");
+    }
+    return keypoints;
+}
+
+Model load_model_row(const Statement& row) {
+    Model model;
+    model.name = row.text(1);
+    model.file = row.text(2);
+    model.sha256 = row.text(3);
+    model.mesh.vertices = unflat(row.blob<float>(4));
+    const std::vector<std::uint32_t> triangles = row.blob<std::uint32_t>(5);
+    if (triangles.empty() || triangles.size() % 3 != 0) throw InvalidInput("triangles are damaged");
+    for (std::size_t i = 0; i < triangles.size(); i += 3) {
+        model.mesh.triangles.push_back({triangles[i], triangles[i + 1], triangles[i + 2]});
+        for (const std::uint32_t vertex : model.mesh.triangles.back()) {
+            if (vertex >= model.mesh.vertices.size())
+                throw InvalidInput("a triangle names no vertex");
+        }
+    }
+    model.shape = unpack_shape(row.blob<double>(6));
+    std::vector<Vec3f> surface = unflat(row.blob<float>(7));
+    if (surface.empty() || surface.size() % 2 != 0) throw InvalidInput("the surface is damaged");
+    const auto half = surface.begin() + static_cast<std::ptrdiff_t>(surface.size() / 2);
+    model.surface.points.assign(surface.begin(), half);
+    model.surface.normals.assign(half, surface.end());
+    model.keypoints = load_keypoints(row, 8);
+    const std::vector<std::int32_t> c = row.blob<std::int32_t>(11);
+    if (c.size() != 6) throw InvalidInput("counts are damaged");
+    model.counts = {c[0], c[1], c[2], c[3], c[4], c[5], row.real(12)};
+    return model;
+}
+
+Entry load_entry_row(const Statement& row, const std::vector<Model>& models) {
+    Entry entry;
+    const std::int64_t model = row.integer(1);
+    if (model < 0 || model >= static_cast<std::int64_t>(models.size())) {
+        throw InvalidInput("an entry names no model");
+    }
+    entry.model = static_cast<std::uint32_t>(model);
+    entry.view = static_cast<int>(row.integer(2));
+    entry.direction = static_cast<int>(row.integer(3));
+    entry.fraction = static_cast<int>(row.integer(4));
+    const std::vector<Vec3f> viewpoint = unflat(row.blob<float>(5));
+    if (viewpoint.size() != 1) throw InvalidInput("a viewpoint is damaged");
+    entry.cloud.viewpoint = viewpoint.front();
+    entry.frame = unpack_frame(row.blob<double>(6), row.integer(7));
+    for (const EncodedPoint& point : row.blob<EncodedPoint>(8)) {
+        entry.cloud.points.push_back(decode_point(point, models[entry.model].shape));
+    }
+    if (entry.cloud.empty()) throw InvalidInput("an entry has no points");
+    return entry;
+}
+
+DescriptorTable load_table(Database& database, const AnyDescriptor& descriptor,
+                           std::size_t entries) {
+    DescriptorTable table{descriptor, {}};
+    Statement select_rows(database,
+                          "SELECT entry, row FROM descriptor WHERE name=? ORDER BY entry");
+    select_rows.bind(1, std::string(descriptor_name(descriptor)));
+    std::size_t next = 0;
+    for (; select_rows.step(); ++next) {
+        const std::vector<float> row = select_rows.blob<float>(1);
+        if (select_rows.integer(0) != static_cast<std::int64_t>(next) ||
+            row.size() != descriptor_length(descriptor)) {
+            throw InvalidInput(fmt::format("descriptor {} of entry {} is damaged",
+                                           descriptor_name(descriptor), next));
+        }
+        for (const float value : row) {
+            if (!std::isfinite(value)) throw InvalidInput("a descriptor is not finite");
+        }
+        table.rows.insert(table.rows.end(), row.begin(), row.end());
+    }
+    if (next != entries) {
+        throw InvalidInput(fmt::format("descriptor {} has {} rows for {} entries",
+                                       descriptor_name(descriptor), next, entries));
+    }
+    return table;
+}
+
+std::int64_t pragma(Database& database, const char* sql) {
+    Statement statement(database, sql);
+    return statement.step() ? statement.integer(0) : 0;
+}
+
+ModelLibrary load_content(Database& database) {
+    SettingTexts texts;
+    Statement settings(database, "SELECT key, value FROM setting");
+    while (settings.step()) texts[settings.text(0)] = settings.text(1);
+    ModelLibrary library;
+    library.settings = settings_from_text(texts);
+    Statement models(database, "SELECT * FROM model ORDER BY id");
+    while (models.step()) {
+        if (models.integer(0) != static_cast<std::int64_t>(library.models.size())) {
+            throw InvalidInput("models are not numbered from 0");
+        }
+        library.models.push_back(load_model_row(models));
+    }
+    Statement entries(database, "SELECT * FROM entry ORDER BY id");
+    while (entries.step()) library.entries.push_back(load_entry_row(entries, library.models));
+    for (const AnyDescriptor& descriptor : library.settings.descriptors) {
+        library.tables.push_back(load_table(database, descriptor, library.entries.size()));
+    }
+    if (library.models.empty()) throw InvalidInput("the library has no models");
+    return library;
+}
+
+}  // namespace
+
+void save_library(const ModelLibrary& library, const std::filesystem::path& path) {
+    if (std::filesystem::is_directory(path)) throw FileError(path, "is a folder");
+    Temporary temporary(path);
+    {
+        Database database(temporary.path(), Database::Mode::create);
+        database.run("PRAGMA journal_mode=MEMORY; PRAGMA synchronous=FULL; PRAGMA page_size=8192;");
+        database.run(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
+                                 kApplicationId, kLibraryFormat)
+                         .c_str());
+        database.run("BEGIN");
+        database.run(kSchema);
+        Statement insert(database, "INSERT INTO setting VALUES(?,?)");
+        for (const auto& [key, value] : to_text(library.settings)) {
+            insert.bind(1, key);
+            insert.bind(2, value);
+            insert.step();
+            insert.reset();
+        }
+        save_models(database, library);
+        save_entries(database, library);
+        save_descriptors(database, library);
+        database.run("COMMIT");
+    }
+    temporary.put_in_place();
+}
+
+ModelLibrary load_library(const std::filesystem::path& path) {
+    if (!std::filesystem::exists(path)) throw FileError(path, "no such file");
+    if (std::filesystem::is_directory(path)) throw FileError(path, "is a folder");
+    Database database(path, Database::Mode::read);
+    if (pragma(database, "PRAGMA application_id") != kApplicationId) {
+        throw FormatError(path, "header", "not an Ostraka library");
+    }
+    const std::int64_t format = pragma(database, "PRAGMA user_version");
+    if (format != kLibraryFormat) {
+        throw FormatError(
+            path, "header",
+            fmt::format("library format {}, this program reads format {}", format, kLibraryFormat));
+    }
+    try {
+        return load_content(database);
+    } catch (const InvalidInput& error) {
+        throw FormatError(path, "library", error.what());
+    }
+}
+
+}  // namespace ostraka

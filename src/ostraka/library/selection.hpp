@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chooses the entries of a model among its candidates (method, 2.5).
+//
+// First, candidates that show the same surface as an earlier one are dropped. Then up to `budget`
+// are chosen so that a random candidate, taken as a likely observation, overlaps its best entry
+// most: maximize F(S) = sum over observations o of max over e in S of overlap(e, o), a
+// facility-location function, monotone and submodular, for which the greedy choice reaches at least
+// 1 - 1/e of the best. Nemhauser, Wolsey, Fisher. An Analysis of Approximations for Maximizing
+// Submodular Set Functions. Math. Programming 14, 1978. Lazy evaluation: Minoux 1978.
+#pragma once
+
+#include <vector>
+
+#include "ostraka/library/surface_elements.hpp"
+
+namespace ostraka {
+
+struct SelectionSettings {
+    int budget = 64;  ///< entries a model, at most; the same for all, so that votes are fair
+    double max_overlap = 0.9;  ///< overlap (intersection over union) with an earlier candidate that
+                               ///< makes one redundant; above 1 nothing is
+};
+
+struct SelectionResult {
+    std::vector<std::uint32_t> chosen;  ///< indices of candidates, ascending
+    std::size_t redundant = 0;          ///< dropped as redundant
+    std::size_t beyond_budget = 0;      ///< neither redundant nor chosen
+    double coverage = 0.0;              ///< F(chosen) / number of candidates, 0 to 1
+};
+
+/// @param candidates  what each shows; earlier ones are preferred as representatives.
+SelectionResult select_entries(std::span<const ElementSet> candidates,
+                               const SelectionSettings& settings);
+
+}  // namespace ostraka

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/recognition/model_probe.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "ostraka/base/parallel.hpp"
+#include "ostraka/views/viewpoints.hpp"
+
+namespace ostraka {
+namespace {
+
+constexpr double kFieldMargin = 0.1;   // of the diameter: how far off a pose may be
+constexpr double kViewDistance = 3.0;  // diameters
+constexpr double kHitTolerance = 1.0;  // sampling distances
+
+// Farthest-point subset: its order is coarse to fine.
+std::vector<std::uint32_t> spread(const std::vector<Vec3f>& points, std::size_t count) {
+    std::vector<float> squared(points.size(), std::numeric_limits<float>::max());
+    std::vector<std::uint32_t> chosen;
+    std::uint32_t next = 0;
+    for (std::size_t k = 0; k < std::min(count, points.size()); ++k) {
+        chosen.push_back(next);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            squared[i] = std::min(squared[i], (points[i] - points[next]).squaredNorm());
+        }
+        next = static_cast<std::uint32_t>(std::max_element(squared.begin(), squared.end()) -
+                                          squared.begin());
+    }
+    return chosen;
+}
+
+}  // namespace
+
+ModelProbe::ModelProbe(const Model& model, double sampling)
+    : model_(&model),
+      field_(model.surface, sampling, kFieldMargin * model.shape.diameter),
+      rays_({model.mesh}) {
+    for (const std::uint32_t i : spread(model.surface.points, kProbeSamples)) {
+        samples_.push_back(model.surface.points[i]);
+        normals_.push_back(model.surface.normals[i]);
+    }
+    for (const Vec3d& direction : viewpoints(static_cast<int>(kProbeViews))) {
+        directions_.push_back(direction.cast<float>());
+    }
+    visible_.resize(kProbeViews);
+    parallel_for(kProbeViews, [&](std::size_t v) {
+        const Vec3d eye = model.shape.center +
+                          kViewDistance * model.shape.diameter * directions_[v].cast<double>();
+        std::vector<Vec3d> rays;
+        for (const Vec3f& sample : samples_) rays.push_back(sample.cast<double>() - eye);
+        const std::vector<RayHit> hits = rays_.cast(eye, rays);
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+            const double short_of = (1.0 - hits[i].distance) * rays[i].norm();
+            const bool facing = normals_[i].cast<double>().dot(rays[i]) < 0.0;
+            visible_[v][i] = facing && (!hits[i].hit() || short_of < kHitTolerance * sampling);
+        }
+    });
+}
+
+const std::bitset<kProbeSamples>& ModelProbe::visible_from(const Vec3f& viewpoint) const {
+    const Vec3f direction = viewpoint - model_->shape.center.cast<float>();
+    std::size_t best = 0;
+    for (std::size_t v = 1; v < kProbeViews; ++v) {
+        if (directions_[v].dot(direction) > directions_[best].dot(direction)) best = v;
+    }
+    return visible_[best];
+}
+
+}  // namespace ostraka

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/recognition/range_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ostraka/base/error.hpp"
+
+namespace ostraka {
+namespace {
+
+constexpr double kMaxCells = 4e6;  // beyond it cells are made larger
+constexpr int kGapFillPasses = 2;
+
+Mat3f rotation_to(const Vec3d& forward) {
+    return Mat3d(Eigen::Quaterniond::FromTwoVectors(forward, Eigen::Vector3d::UnitZ())
+                     .toRotationMatrix())
+        .cast<float>();
+}
+
+}  // namespace
+
+RangeMap::RangeMap(const PointCloud& raw, const PointCloud& resampled, double sampling)
+    : viewpoint_(raw.viewpoint) {
+    std::vector<float> ranges;
+    Vec3d forward = Vec3d::Zero();
+    for (const Vec3f& point : resampled.points) {
+        const Vec3f offset = point - viewpoint_;
+        ranges.push_back(offset.norm());
+        if (ranges.back() > 0.0F) forward += (offset / ranges.back()).cast<double>();
+    }
+    if (ranges.empty()) return;
+    if (!(forward.norm() > 0.0)) forward = Vec3d::UnitZ();
+    const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+    std::nth_element(ranges.begin(), middle, ranges.end());
+    if (!(*middle > 0.0F)) throw InvalidInput("the viewpoint lies on the scan");
+    R_map_scene_ = rotation_to(forward.normalized());
+
+    // Extent of the projection, in units where the focal length is 1.
+    Vec2f low = Vec2f::Constant(1e9F);
+    Vec2f high = Vec2f::Constant(-1e9F);
+    for (const Vec3f& point : resampled.points) {
+        const Vec3f offset = R_map_scene_ * (point - viewpoint_);
+        const float depth = std::max(offset.norm() + offset.z(), 0.02F * offset.norm() + 1e-12F);
+        const Vec2f at = Vec2f(offset.x(), offset.y()) / depth;
+        low = low.cwiseMin(at);
+        high = high.cwiseMax(at);
+    }
+    cells_per_radian_ = static_cast<float>(2.0 * double{*middle} / sampling);
+    const Vec2f extent = high - low;
+    const double cells = double{extent.x()} * double{extent.y()} * double{cells_per_radian_} *
+                         double{cells_per_radian_};
+    if (cells > kMaxCells) cells_per_radian_ *= static_cast<float>(std::sqrt(kMaxCells / cells));
+    constexpr float kBorder = 2.0F;
+    low_u_ = low.x() * cells_per_radian_ - kBorder;
+    low_v_ = low.y() * cells_per_radian_ - kBorder;
+    width_ = static_cast<std::uint32_t>(extent.x() * cells_per_radian_ + 2.0F * kBorder) + 1;
+    height_ = static_cast<std::uint32_t>(extent.y() * cells_per_radian_ + 2.0F * kBorder) + 1;
+    cells_.resize(std::size_t{width_} * height_);
+
+    for (const Vec3f& point : raw.points) {
+        if (!point.allFinite()) continue;
+        const std::uint32_t index = cell_of(point);
+        if (index == kNoIndex) continue;
+        const float range = (point - viewpoint_).norm();
+        RangeCell& cell = cells_[index];
+        cell.near = cell.measured() ? std::min(cell.near, range) : range;
+        cell.far = std::max(cell.far, range);
+    }
+    for (std::uint32_t i = 0; i < resampled.size(); ++i) {
+        const std::uint32_t index = cell_of(resampled.points[i]);
+        if (index == kNoIndex) continue;
+        RangeCell& cell = cells_[index];
+        const float range = (resampled.points[i] - viewpoint_).norm();
+        const bool closer =
+            cell.point == kNoIndex || range < (resampled.points[cell.point] - viewpoint_).norm();
+        if (closer) cell.point = i;
+    }
+    fill_gaps();
+}
+
+// Single empty cells between measured ones are sampling gaps, not free space; cells that no
+// resampled point fell into borrow one from beside them.
+void RangeMap::fill_gaps() {
+    for (int pass = 0; pass < kGapFillPasses; ++pass) {
+        std::vector<RangeCell> filled = cells_;
+        for (std::uint32_t v = 1; v + 1 < height_; ++v) {
+            for (std::uint32_t u = 1; u + 1 < width_; ++u) {
+                RangeCell& cell = filled[v * width_ + u];
+                if (cell.measured() && cell.point != kNoIndex) continue;
+                int measured = 0;
+                float near = 0.0F;
+                float far = 0.0F;
+                std::uint32_t point = kNoIndex;
+                for (std::uint32_t n = 0; n < 9; ++n) {
+                    const RangeCell& other = cells_[(v + n / 3 - 1) * width_ + u + n % 3 - 1];
+                    if (point == kNoIndex) point = other.point;
+                    if (!other.measured()) continue;
+                    ++measured;
+                    near = near > 0.0F ? std::min(near, other.near) : other.near;
+                    far = std::max(far, other.far);
+                }
+                if (!cell.measured() && measured >= 5) {
+                    cell.near = near;
+                    cell.far = far;
+                }
+                if (cell.measured() && cell.point == kNoIndex) cell.point = point;
+            }
+        }
+        cells_ = std::move(filled);
+    }
+}
+
+Vec3d RangeMap::direction(std::uint32_t cell) const {
+    const double u = (double(cell % width_) + 0.5 + double{low_u_}) / double{cells_per_radian_};
+    const double v = (double(cell / width_) + 0.5 + double{low_v_}) / double{cells_per_radian_};
+    // Inverse of (x, y) / (1 + z) on the unit sphere.
+    const double squared = u * u + v * v;
+    const Vec3d local(2.0 * u / (1.0 + squared), 2.0 * v / (1.0 + squared),
+                      (1.0 - squared) / (1.0 + squared));
+    return R_map_scene_.cast<double>().transpose() * local;
+}
+
+}  // namespace ostraka

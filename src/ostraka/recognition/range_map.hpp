@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the sensor measured in each direction: where the scan has surface, and where it saw free
+// space. Stereographic projection about the scan's middle, which works up to nearly the whole
+// sphere.
+#pragma once
+
+#include <vector>
+
+#include "ostraka/cloud/point_cloud.hpp"
+
+namespace ostraka {
+
+/// One direction's measurement.
+struct RangeCell {
+    float near = 0.0F;  ///< least distance from the viewpoint to a point; 0: nothing measured
+    float far = 0.0F;   ///< greatest distance of such a point
+    std::uint32_t point =
+        kNoIndex;  ///< a point of the resampled cloud in or beside this cell, or kNoIndex
+    bool measured() const { return near > 0.0F; }
+};
+
+class RangeMap {
+  public:
+    /// @param raw        the scan at its own density; invalid points are left out.
+    /// @param resampled  the same scan at the library's sampling distance; only points are used.
+    /// @param sampling   that distance: the side of a cell at the scan's median distance.
+    RangeMap(const PointCloud& raw, const PointCloud& resampled, double sampling);
+
+    /// The number of the cell that shows `point`, or kNoIndex outside the map.
+    std::uint32_t cell_of(const Vec3f& point) const {
+        const Vec3f offset = R_map_scene_ * (point - viewpoint_);
+        const float range = offset.norm();
+        const float depth = range + offset.z();
+        if (!(depth > 1e-6F * range)) return kNoIndex;
+        const float scale = cells_per_radian_ / depth;
+        const float u = offset.x() * scale - low_u_;
+        const float v = offset.y() * scale - low_v_;
+        if (!(u >= 0.0F && v >= 0.0F)) return kNoIndex;
+        if (!(u < static_cast<float>(width_) && v < static_cast<float>(height_))) return kNoIndex;
+        return static_cast<std::uint32_t>(v) * width_ + static_cast<std::uint32_t>(u);
+    }
+    const RangeCell& operator[](std::uint32_t cell) const { return cells_[cell]; }
+    std::size_t size() const { return cells_.size(); }
+    /// Unit direction in the scan's frame through the middle of a cell.
+    Vec3d direction(std::uint32_t cell) const;
+    const Vec3f& viewpoint() const { return viewpoint_; }
+    std::uint32_t width() const { return width_; }
+    std::uint32_t height() const { return height_; }
+
+  private:
+    void fill_gaps();
+
+    Vec3f viewpoint_ = Vec3f::Zero();
+    Mat3f R_map_scene_ = Mat3f::Identity();
+    float cells_per_radian_ =
+        1.0F;  // twice the focal length of the stereographic projection, in cells
+    float low_u_ = 0.0F;
+    float low_v_ = 0.0F;
+    std::uint32_t width_ = 0;
+    std::uint32_t height_ = 0;
+    std::vector<RangeCell> cells_;
+};
+
+}  // namespace ostraka

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/recognition/refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ostraka/base/parallel.hpp"
+#include "ostraka/registration/icp.hpp"
+
+namespace ostraka {
+namespace {
+
+constexpr std::size_t kCoarsePoints = 300;
+constexpr std::size_t kFinePoints = 2000;
+constexpr double kCoarseReach = 6.0;  // sampling distances
+constexpr double kFineReach = 2.5;    // sampling distances
+constexpr double kEndReach = 1.0;     // sampling distances
+
+void score_all(const Scan& scan, const ModelProbe& probe, std::vector<Hypothesis>& hypotheses,
+               double tolerance) {
+    parallel_for(
+        hypotheses.size(),
+        [&](std::size_t i) {
+            hypotheses[i].score =
+                quick_score(gather_evidence(scan, probe, hypotheses[i].T_scene_model, tolerance));
+        },
+        8);
+    std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                     [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
+}
+
+bool nearly_equal(const Pose& a, const Pose& b, const MeshShape& shape, double distance) {
+    const Vec3d centers = a * shape.center - b * shape.center;
+    const Mat3d turn = a.linear() * b.linear().transpose();
+    const double angle = std::acos(std::clamp((turn.trace() - 1.0) / 2.0, -1.0, 1.0));
+    return centers.norm() + angle * shape.radius < distance;
+}
+
+// The best `count` hypotheses, each farther than `distance` from every better one.
+void thin_out(std::vector<Hypothesis>& hypotheses, std::size_t count, const MeshShape& shape,
+              double distance) {
+    std::vector<Hypothesis> kept;
+    for (const Hypothesis& hypothesis : hypotheses) {
+        if (kept.size() == count) break;
+        const bool twin = std::any_of(kept.begin(), kept.end(), [&](const Hypothesis& better) {
+            return nearly_equal(hypothesis.T_scene_model, better.T_scene_model, shape, distance);
+        });
+        if (!twin) kept.push_back(hypothesis);
+    }
+    hypotheses = std::move(kept);
+}
+
+}  // namespace
+
+Pose refine_pose(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
+                 std::size_t max_points, double reach) {
+    const MeshShape& shape = probe.model().shape;
+    const Vec3f center = Vec3d(T_scene_model * shape.center).cast<float>();
+    const auto radius = static_cast<float>(shape.radius + reach);
+    std::vector<std::uint32_t> around;
+    for (const std::uint32_t i : scan.foreground) {
+        if ((scan.cloud.points[i] - center).squaredNorm() < radius * radius) around.push_back(i);
+    }
+    const std::size_t stride = 1 + around.size() / max_points;
+    std::vector<Vec3f> points;
+    std::vector<Vec3f> normals;
+    for (std::size_t i = 0; i < around.size(); i += stride) {
+        points.push_back(scan.cloud.points[around[i]]);
+        normals.push_back(scan.cloud.normals[around[i]]);
+    }
+    const IcpSettings settings{.start_distance = reach, .end_distance = kEndReach * scan.sampling};
+    return icp(probe.field(), points, normals, T_scene_model.inverse(), settings)
+        .T_target_source.inverse();
+}
+
+std::vector<Hypothesis> refine_hypotheses(const Scan& scan, const ModelProbe& probe,
+                                          std::vector<Hypothesis> hypotheses,
+                                          const RecognitionSettings& settings) {
+    const MeshShape& shape = probe.model().shape;
+    const double tolerance = settings.tolerance * scan.sampling;
+    score_all(scan, probe, hypotheses, 2.0 * tolerance);
+    thin_out(hypotheses, static_cast<std::size_t>(settings.candidates_per_model), shape,
+             3.0 * scan.sampling);
+    parallel_for(hypotheses.size(), [&](std::size_t i) {
+        hypotheses[i].T_scene_model = refine_pose(scan, probe, hypotheses[i].T_scene_model,
+                                                  kCoarsePoints, kCoarseReach * scan.sampling);
+    });
+    score_all(scan, probe, hypotheses, tolerance);
+    thin_out(hypotheses, static_cast<std::size_t>(settings.finalists_per_model), shape,
+             2.0 * scan.sampling);
+    parallel_for(hypotheses.size(), [&](std::size_t i) {
+        hypotheses[i].T_scene_model = refine_pose(scan, probe, hypotheses[i].T_scene_model,
+                                                  kFinePoints, kFineReach * scan.sampling);
+    });
+    score_all(scan, probe, hypotheses, tolerance);
+    thin_out(hypotheses, hypotheses.size(), shape, scan.sampling);
+    return hypotheses;
+}
+
+}  // namespace ostraka

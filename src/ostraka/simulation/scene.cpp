@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/simulation/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ostraka/base/parallel.hpp"
+#include "ostraka/base/random.hpp"
+#include "ostraka/mesh/shape.hpp"
+
+namespace ostraka {
+namespace {
+
+TriangleMesh square(double side) {
+    const auto half = static_cast<float>(side / 2.0);
+    TriangleMesh mesh;
+    mesh.vertices = {Vec3f(-half, -half, 0.0F), Vec3f(half, -half, 0.0F), Vec3f(half, half, 0.0F),
+                     Vec3f(-half, half, 0.0F)};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+std::size_t count_pixels(const RenderedView& view, std::uint32_t mesh) {
+    return static_cast<std::size_t>(std::count(view.mesh.begin(), view.mesh.end(), mesh));
+}
+
+double mean_diameter(std::span<const TriangleMesh> meshes) {
+    double sum = 0.0;
+    for (const TriangleMesh& mesh : meshes) sum += measure(mesh).diameter;
+    return sum / static_cast<double>(meshes.size());
+}
+
+// The pose of a mesh turned by R, its center above `place`, its lowest point at height 0.
+Pose stand(const TriangleMesh& mesh, const Mat3d& R_world_model, const Vec3d& place) {
+    Pose T_world_model = Pose::Identity();
+    T_world_model.linear() = R_world_model;
+    double lowest = std::numeric_limits<double>::max();
+    for (const Vec3f& vertex : mesh.vertices) {
+        lowest = std::min(lowest, (R_world_model * vertex.cast<double>()).z());
+    }
+    const Vec3d center = R_world_model * measure(mesh).center;
+    T_world_model.translation() = Vec3d(place.x() - center.x(), place.y() - center.y(), -lowest);
+    return T_world_model;
+}
+
+}  // namespace
+
+SimulatedScene simulate_scene(std::span<const TriangleMesh> meshes,
+                              std::span<const PlacedModel> placed, const SceneView& view) {
+    std::vector<TriangleMesh> world;
+    for (const PlacedModel& object : placed) {
+        world.push_back(transformed(meshes[object.model], object.T_world_model));
+    }
+    if (view.table_size > 0.0) world.push_back(square(view.table_size));
+    SimulatedScene scene;
+    RenderedView rendered = render(RayScene(world), view.camera, view.T_camera_world, view.sensor);
+    scene.objects.resize(placed.size());
+    parallel_for(placed.size(), [&](std::size_t i) {
+        const RenderedView alone = render(RayScene({world[i]}), view.camera, view.T_camera_world);
+        const std::size_t total = count_pixels(alone, 0);
+        const std::size_t seen = count_pixels(rendered, static_cast<std::uint32_t>(i));
+        scene.objects[i] = {placed[i].model, view.T_camera_world * placed[i].T_world_model,
+                            total > 0 ? double(seen) / double(total) : 0.0};
+    });
+    scene.cloud = std::move(rendered.cloud);
+    scene.labels = std::move(rendered.mesh);
+    for (std::uint32_t& label : scene.labels) {
+        if (label >= placed.size()) label = kNoIndex;
+    }
+    return scene;
+}
+
+SimulatedScene simulate_tabletop(std::span<const TriangleMesh> meshes,
+                                 std::span<const std::uint32_t> chosen, std::uint64_t number,
+                                 const TabletopSettings& settings) {
+    Random random(settings.seed, number);
+    std::vector<TriangleMesh> used;
+    for (const std::uint32_t model : chosen) used.push_back(meshes[model]);
+    const double diameter = mean_diameter(used);
+    std::vector<PlacedModel> placed;
+    const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(double(chosen.size()))));
+    const std::size_t rows = (chosen.size() + columns - 1) / columns;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const double step = settings.spacing * diameter;
+        const Vec3d place(step * (double(i % columns) - (double(columns) - 1.0) / 2.0),
+                          step * (double(i / columns) - (double(rows) - 1.0) / 2.0), 0.0);
+        placed.push_back({chosen[i], stand(used[i], random.rotation(), place)});
+    }
+    const double azimuth = random.uniform(0.0, 2.0 * kPi);
+    const double elevation = random.uniform(settings.min_elevation, settings.max_elevation);
+    const double roll = random.uniform(-0.3, 0.3);
+    const Vec3d target(0.0, 0.0, 0.3 * diameter);
+    const double distance = settings.distance * diameter;
+    const Vec3d eye =
+        target + distance * Vec3d(std::cos(elevation) * std::cos(azimuth),
+                                  std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+    SceneView view{
+        .camera = settings.camera,
+        .T_camera_world = look_at(eye, target, Vec3d(0.0, std::sin(roll), std::cos(roll))),
+        .sensor = settings.sensor,
+        .table_size = 8.0 * diameter};
+    view.sensor.seed = settings.sensor.seed + (number << 32U);
+    return simulate_scene(meshes, placed, view);
+}
+
+SimulatedScene simulate_random_view(std::span<const TriangleMesh> meshes, std::uint64_t number,
+                                    const RandomViewSettings& settings) {
+    Random random(settings.seed, number);
+    const double diameter = mean_diameter(meshes);
+    const auto choices =
+        static_cast<std::uint32_t>(settings.max_objects - settings.min_objects + 1);
+    const int count = settings.min_objects + static_cast<int>(random.below(choices));
+    std::vector<PlacedModel> placed;
+    for (int i = 0; i < count; ++i) {
+        const std::uint32_t model = random.below(static_cast<std::uint32_t>(meshes.size()));
+        Pose T_world_model = Pose::Identity();
+        T_world_model.linear() = random.rotation();
+        const Vec3d place =
+            settings.spread * diameter * std::cbrt(random.uniform()) * random.direction();
+        T_world_model.translation() =
+            place - T_world_model.linear() * measure(meshes[model]).center;
+        placed.push_back({model, T_world_model});
+    }
+    SceneView view{
+        .camera = settings.camera,
+        .T_camera_world = look_at(settings.distance * diameter * random.direction(), Vec3d::Zero()),
+        .sensor = settings.sensor};
+    view.sensor.seed = settings.sensor.seed + (number << 32U);
+    return simulate_scene(meshes, placed, view);
+}
+
+}  // namespace ostraka

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scans with ground truth: models placed in a world, seen by a virtual depth sensor.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ostraka/views/render.hpp"
+
+namespace ostraka {
+
+struct PlacedModel {
+    std::uint32_t model = 0;  ///< index into the meshes given
+    Pose T_world_model = Pose::Identity();
+};
+
+struct TrueObject {
+    std::uint32_t model = 0;                ///< index into the meshes given
+    Pose T_scene_model = Pose::Identity();  ///< the scan's frame is the camera's
+    double visible_fraction = 0.0;          ///< pixels seen / pixels if nothing were in front
+};
+
+struct SimulatedScene {
+    PointCloud cloud;                 ///< organized, camera frame, sensor at the origin
+    std::vector<TrueObject> objects;  ///< in the order of their placement
+    std::vector<std::uint32_t>
+        labels;  ///< per pixel: index into objects, or kNoIndex (table, nothing)
+};
+
+struct SceneView {
+    PinholeCamera camera;
+    Pose T_camera_world = Pose::Identity();
+    SensorSettings sensor;    ///< noise in the meshes' unit
+    double table_size = 0.0;  ///< side of a square table at world z = 0, its top; 0: none
+};
+
+/// Renders placed models. @param meshes  all in one unit, which becomes the scan's.
+SimulatedScene simulate_scene(std::span<const TriangleMesh> meshes,
+                              std::span<const PlacedModel> placed, const SceneView& view);
+
+struct TabletopSettings {
+    int objects = 1;       ///< stand on the table in random rotation, lowest point touching it
+    double spacing = 1.0;  ///< between neighboring objects' centers, in mean diameters
+    double min_elevation = 0.35;  ///< radians of the sensor above the table
+    double max_elevation = 1.35;  ///< radians
+    double distance = 4.0;        ///< from sensor to the objects, in mean diameters
+    PinholeCamera camera;         ///< 640 x 480, 58 degrees wide
+    SensorSettings sensor;
+    std::uint64_t seed = 0;  ///< scene number i uses (seed, i)
+};
+
+/// Objects on a table from a random viewpoint.
+/// @param chosen  indices of the models to place, one for each object.
+SimulatedScene simulate_tabletop(std::span<const TriangleMesh> meshes,
+                                 std::span<const std::uint32_t> chosen, std::uint64_t number,
+                                 const TabletopSettings& settings);
+
+struct RandomViewSettings {
+    int min_objects = 3;
+    int max_objects = 5;
+    double spread =
+        0.45;  ///< how far objects lie from the middle, in mean diameters; less is denser
+    double distance = 4.0;  ///< from sensor to the middle, in mean diameters
+    PinholeCamera camera;
+    SensorSettings sensor;
+    std::uint64_t seed = 0;  ///< scene number i uses (seed, i)
+};
+
+/// Bologna's "random views" recipe: some models in random rotation around one place, seen from one
+/// viewpoint, hiding each other. They may interpenetrate; no table.
+SimulatedScene simulate_random_view(std::span<const TriangleMesh> meshes, std::uint64_t number,
+                                    const RandomViewSettings& settings);
+
+}  // namespace ostraka

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/io/png_file.hpp"
+
+#include "io/io_testing.hpp"
+#include "ostraka/base/error.hpp"
+
+namespace ostraka {
+namespace {
+
+using namespace io_testing;
+
+const std::vector<std::uint16_t> kDepths = {0, 1, 256, 65535, 0x1234, 77};
+
+TEST(PngFile, DepthSurvivesWritingAndReading) {
+    const TestFolder folder;
+    write_depth_png16(folder / "d.png", 3, 2, kDepths);
+    const DepthImage16 image = read_depth_png16(folder / "d.png");
+    EXPECT_EQ(image.width, 3);
+    EXPECT_EQ(image.height, 2);
+    EXPECT_EQ(image.values, kDepths);
+}
+
+TEST(PngFile, WritesColorImagesThatAreNoDepth) {
+    const TestFolder folder;
+    const Image image = {2, 1, {{255, 0, 0}, {1, 2, 3}}};
+    write_png(folder / "c.png", image);
+    const std::string bytes = load_text(folder / "c.png");
+    ASSERT_GT(bytes.size(), 33U);
+    EXPECT_EQ(bytes.substr(1, 3), "PNG");
+    EXPECT_EQ(bytes.substr(16, 10), std::string("\0\0\0\2\0\0\0\1\x08\x02", 10));
+    EXPECT_THROW(read_depth_png16(folder / "c.png"), FormatError);
+}
+
+TEST(PngFile, RejectsSizesThatDoNotFit) {
+    const TestFolder folder;
+    EXPECT_THROW(write_depth_png16(folder / "d.png", 3, 3, kDepths), InvalidInput);
+    EXPECT_THROW(write_depth_png16(folder / "d.png", -3, -2, kDepths), InvalidInput);
+    EXPECT_THROW(write_png(folder / "d.png", {}), InvalidInput);
+    EXPECT_FALSE(std::filesystem::exists(folder / "d.png"));
+}
+
+TEST(PngFile, DamagedFilesAreRejected) {
+    const TestFolder folder;
+    write_depth_png16(folder / "d.png", 3, 2, kDepths);
+    const std::string valid = load_text(folder / "d.png");
+    for (std::size_t length = 0; length < valid.size(); ++length) {
+        save(folder / "t.png", valid.substr(0, length));
+        EXPECT_THROW(read_depth_png16(folder / "t.png"), FormatError) << length;
+    }
+    // Every byte is under a checksum, or is one.
+    for (std::size_t i = 0; i < valid.size(); ++i) {
+        std::string damaged = valid;
+        damaged[i] = static_cast<char>(damaged[i] ^ 0x11);
+        save(folder / "t.png", damaged);
+        EXPECT_THROW(read_depth_png16(folder / "t.png"), FormatError) << i;
+    }
+}
+
+TEST(PngFile, RejectsAHeaderTooLargeForItsFile) {
+    // IHDR of 1,000,000 x 1,000,000 with its right checksum (CRC-32 of "IHDR" and the 13 bytes).
+    const TestFolder folder;
+    std::string chunk = "IHDR";
+    put(chunk, std::uint32_t{1'000'000}, std::endian::big);
+    put(chunk, std::uint32_t{1'000'000}, std::endian::big);
+    chunk += std::string("\x10\0\0\0\0", 5);
+    std::uint32_t crc = 0xffffffffU;
+    for (const char c : chunk) {
+        crc ^= static_cast<std::uint8_t>(c);
+        for (int bit = 0; bit < 8; ++bit) {
+            crc = crc >> 1U ^ ((crc & 1U) != 0 ? 0xedb88320U : 0U);
+        }
+    }
+    write_depth_png16(folder / "d.png", 3, 2, kDepths);
+    std::string bytes = load_text(folder / "d.png");
+    std::string end;
+    put(end, ~crc, std::endian::big);
+    bytes.replace(12, 21, chunk + end);
+    save(folder / "d.png", bytes);
+    try {
+        read_depth_png16(folder / "d.png");
+        FAIL();
+    } catch (const FormatError& error) {
+        EXPECT_NE(std::string(error.what()).find("too short for 1000000 x 1000000"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace ostraka
