@@ -17,6 +17,8 @@ endif()
 # Fused multiply-add would make results depend on the machine: never contract.
 add_compile_options(-ffp-contract=off -fno-math-errno -fno-trapping-math)
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual)
+# Settings are filled by designated initializers; what isn't named keeps its default on purpose.
+add_compile_options(-Wno-missing-field-initializers)
 if(OSTRAKA_WERROR)
   add_compile_options(-Werror)
 endif()

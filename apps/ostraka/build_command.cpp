@@ -53,17 +53,17 @@ std::string size_hint(const std::vector<ModelSource>& models) {
 }
 
 void say_summary(const ModelLibrary& library) {
-    std::vector<std::vector<std::string>> rows = {{"model", "diameter", "views", "cuts", "too small",
-                                                   "redundant", "beyond budget", "kept",
-                                                   "coverage"}};
+    std::vector<std::vector<std::string>> rows = {{"model", "diameter", "views", "cuts",
+                                                   "too small", "redundant", "beyond budget",
+                                                   "kept", "coverage"}};
     for (const Model& model : library.models) {
         const BuildCounts& c = model.counts;
-        rows.push_back({model.name,
-                        fmt::format("{:.4g} {}", model.shape.diameter,
-                                    unit_name(library.settings.unit)),
-                        std::to_string(c.views), std::to_string(c.cuts), std::to_string(c.too_small),
-                        std::to_string(c.redundant), std::to_string(c.beyond_budget),
-                        std::to_string(c.kept), fmt::format("{:.3f}", c.coverage)});
+        rows.push_back(
+            {model.name,
+             fmt::format("{:.4g} {}", model.shape.diameter, unit_name(library.settings.unit)),
+             std::to_string(c.views), std::to_string(c.cuts), std::to_string(c.too_small),
+             std::to_string(c.redundant), std::to_string(c.beyond_budget), std::to_string(c.kept),
+             fmt::format("{:.3f}", c.coverage)});
     }
     say_table(rows);
 }
@@ -122,8 +122,9 @@ void add_build(CLI::App& app) {
     command->add_option("-o,--output", options->output, "library file to write")->required();
     add_unit(*command, options->unit, "unit of the numbers in the model files");
     LibrarySettings& settings = options->settings;
-    command->add_option("--views", settings.views.count,
-                        "viewpoints around each model: 12, 20, 42, 80, 162, 320, 642")
+    command
+        ->add_option("--views", settings.views.count,
+                     "viewpoints around each model: 12, 20, 42, 80, 162, 320, 642")
         ->capture_default_str();
     command->add_option("--sampling", settings.sampling,
                         "distance between points, in --unit (default: 1 % of the median diameter)");
@@ -137,7 +138,8 @@ void add_build(CLI::App& app) {
                       "the traditional library: whole views, no subparts");
     command->add_option("--budget", settings.selection.budget, "entries kept for each model")
         ->capture_default_str();
-    command->add_option("--seed", settings.seed, "seed of every random step")->capture_default_str();
+    command->add_option("--seed", settings.seed, "seed of every random step")
+        ->capture_default_str();
     add_common(*command, options->common);
     command->callback([options] { run_build(*options); });
 }

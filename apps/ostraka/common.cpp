@@ -90,9 +90,10 @@ Unit require_unit(const std::string& text, const std::string& what) {
 }
 
 void add_viewpoint(CLI::App& command, std::string& text) {
-    command.add_option("--viewpoint", text,
-                       "position of the sensor as x,y,z, in the scan's frame and unit (default: what "
-                       "the file says, else the origin)");
+    command.add_option(
+        "--viewpoint", text,
+        "position of the sensor as x,y,z, in the scan's frame and unit (default: what "
+        "the file says, else the origin)");
 }
 
 std::vector<double> parse_numbers(const std::string& text, const std::string& option) {
@@ -114,7 +115,8 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& op
 std::optional<Vec3f> parse_viewpoint(const std::string& text) {
     if (text.empty()) return std::nullopt;
     const std::vector<double> numbers = parse_numbers(text, "--viewpoint");
-    if (numbers.size() != 3) throw CLI::ValidationError("--viewpoint", "needs three numbers: x,y,z");
+    if (numbers.size() != 3)
+        throw CLI::ValidationError("--viewpoint", "needs three numbers: x,y,z");
     return Vec3d(numbers.data()).cast<float>();
 }
 

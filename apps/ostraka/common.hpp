@@ -20,11 +20,11 @@ using Json = nlohmann::ordered_json;
 /// Documented in docs/command_line.md and in `ostraka --help`.
 enum ExitCode {
     kOk = 0,
-    kInternal = 1,     ///< a bug or lack of memory
-    kUsage = 2,        ///< the command line is wrong
-    kInvalidInput = 3, ///< the data can't be used: an empty mesh, a scan of another unit, ...
-    kFileError = 4,    ///< a file can't be opened, read or written
-    kFormatError = 5,  ///< a file's content is damaged or of another format
+    kInternal = 1,      ///< a bug or lack of memory
+    kUsage = 2,         ///< the command line is wrong
+    kInvalidInput = 3,  ///< the data can't be used: an empty mesh, a scan of another unit, ...
+    kFileError = 4,     ///< a file can't be opened, read or written
+    kFormatError = 5,   ///< a file's content is damaged or of another format
     kInterrupted = 130,
 };
 

@@ -18,16 +18,24 @@ int fail(const std::string& problem, int code) {
 }
 
 int run(int argc, char** argv) {
-    CLI::App app{"Ostraka finds CAD models in depth scans, even when most of each object is hidden.\n"
-                 "Build a library once, then recognize scans with it:\n"
-                 "  ostraka build parts/*.ply --unit mm -o parts.ostraka\n"
-                 "  ostraka recognize parts.ostraka scan.ply --picture found.png"};
+    CLI::App app{
+        "Ostraka finds CAD models in depth scans, even when most of each object is hidden.\n"
+        "Build a library once, then recognize scans with it:\n"
+        "  ostraka build parts/*.ply --unit mm -o parts.ostraka\n"
+        "  ostraka recognize parts.ostraka scan.ply --picture found.png"};
     app.set_version_flag("--version", OSTRAKA_VERSION);
     app.require_subcommand(1);
-    app.footer("Exit codes: 0 done, 1 internal error, 2 wrong command line, 3 unusable data, "
-               "4 file can't be read or written, 5 damaged or foreign file, 130 interrupted.");
+    app.footer(
+        "Exit codes: 0 done, 1 internal error, 2 wrong command line, 3 unusable data, "
+        "4 file can't be read or written, 5 damaged or foreign file, 130 interrupted.");
     app::add_build(app);
     app::add_recognize(app);
+    app::add_classify(app);
+    app::add_inspect(app);
+    app::add_views(app);
+    app::add_parts(app);
+    app::add_simulate(app);
+    app::add_evaluate(app);
     try {
         app.parse(argc, argv);
         return app::kOk;

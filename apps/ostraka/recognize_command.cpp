@@ -22,7 +22,8 @@ struct RecognizeOptions {
     RecognitionSettings settings;
 };
 
-Json recognition_json(const Recognition& result, const std::string& scene, Unit unit, double factor) {
+Json recognition_json(const Recognition& result, const std::string& scene, Unit unit,
+                      double factor) {
     Json objects = Json::array();
     for (const RecognizedObject& object : result.objects) {
         objects.push_back({{"model", object.model},
@@ -34,7 +35,8 @@ Json recognition_json(const Recognition& result, const std::string& scene, Unit 
     }
     Json seconds = Json::object();
     for (const auto& [stage, time] : result.seconds) seconds[stage] = time;
-    return {{"scene", scene}, {"unit", unit_name(unit)}, {"objects", objects}, {"seconds", seconds}};
+    return {
+        {"scene", scene}, {"unit", unit_name(unit)}, {"objects", objects}, {"seconds", seconds}};
 }
 
 void run_recognize(const RecognizeOptions& options) {
@@ -43,7 +45,8 @@ void run_recognize(const RecognizeOptions& options) {
     const Recognizer recognizer(library);
     const double load_seconds = watch.lap();
     CloudFile file = read_cloud_file(options.scene);
-    if (const auto viewpoint = parse_viewpoint(options.viewpoint)) file.cloud.viewpoint = *viewpoint;
+    if (const auto viewpoint = parse_viewpoint(options.viewpoint))
+        file.cloud.viewpoint = *viewpoint;
     const Unit unit = parse_unit(options.unit).value_or(library.settings.unit);
     const PointCloud scene = scaled(file.cloud, unit_factor(unit, library.settings.unit));
     const double read_seconds = watch.lap();
@@ -60,7 +63,8 @@ void run_recognize(const RecognizeOptions& options) {
     }
     say_table(rows);
     std::string times;
-    for (const auto& [stage, time] : result.seconds) times += fmt::format(" {} {:.3f}", stage, time);
+    for (const auto& [stage, time] : result.seconds)
+        times += fmt::format(" {} {:.3f}", stage, time);
     say("seconds:" + times);
     write_json(recognition_json(result, options.scene, unit, factor), options.common.json);
 }
@@ -74,8 +78,9 @@ void add_recognize(CLI::App& app) {
     command->add_option("scene", options->scene, "scan: PLY, PCD, XYZ or TXT")->required();
     add_unit(*command, options->unit, "unit of the numbers in the scan (default: the library's)");
     add_viewpoint(*command, options->viewpoint);
-    command->add_option("--min-confidence", options->settings.min_confidence,
-                        "objects below it are not reported")
+    command
+        ->add_option("--min-confidence", options->settings.min_confidence,
+                     "objects below it are not reported")
         ->capture_default_str();
     add_common(*command, options->common);
     command->callback([options] { run_recognize(*options); });

@@ -78,11 +78,15 @@ std::string sha256(std::span<const unsigned char> bytes) {
 std::string sha256_of_file(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) throw FileError(path, "cannot be opened");
-    const std::vector<char> bytes((std::istreambuf_iterator<char>(file)),
-                                  std::istreambuf_iterator<char>());
+    std::vector<unsigned char> bytes;
+    std::vector<char> chunk(std::size_t{1} << 20U);
+    while (file) {
+        file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
+        bytes.insert(bytes.end(), chunk.begin(), chunk.begin() + file.gcount());
+    }
+    // A folder, too, can be opened; reading it fails.
     if (file.bad()) throw FileError(path, "cannot be read");
-    std::vector<unsigned char> data(bytes.begin(), bytes.end());
-    return sha256(data);
+    return sha256(bytes);
 }
 
 }  // namespace ostraka

@@ -38,7 +38,8 @@ std::vector<std::uint32_t> largest_group(const ProximityGraph& graph,
 struct SmoothnessSettings {
     double tolerance = 0.0;       ///< distance that joins two points, in the cloud's unit
     double max_angle = 0.2;       ///< radians between the normals of joined points
-    double max_curvature = 0.04;  ///< surface variation above which a point joins nothing; 0..1/3
+    double max_curvature = 0.04;  ///< mean squared sine between a point's normal and those around
+                                  ///< it, above which it lies on a crease; 0 to 1
     std::size_t min_size = 1;     ///< smaller groups are left out
 };
 

@@ -12,6 +12,7 @@ namespace {
 
 // Below this ratio of the two larger deviations' variances the points lie on a line.
 constexpr double kLineRatio = 1e-10;
+constexpr double kUnsureRatio = 1e-6;
 
 Vec3f fit_normal(std::span<const Vec3f> points, std::span<const Neighbor> neighbors) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -30,6 +31,8 @@ Vec3f fit_normal(std::span<const Vec3f> points, std::span<const Neighbor> neighb
     scatter = scatter / count - mean * mean.transpose();
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
     solver.computeDirect(scatter);
+    // The closed form loses half of the digits where two values are nearly equal, as on a line.
+    if (solver.eigenvalues()[1] < kUnsureRatio * solver.eigenvalues()[2]) solver.compute(scatter);
     const Eigen::Vector3d values = solver.eigenvalues();
     if (!(values[2] > 0.0) || values[1] < kLineRatio * values[2]) return none;
     return Vec3d(solver.eigenvectors().col(0)).normalized().cast<float>();

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "ostraka/base/error.hpp"
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/base/random.hpp"
 
@@ -67,6 +68,8 @@ Candidate fit(const PointCloud& cloud, const std::vector<std::uint32_t>& inliers
 
 std::optional<Plane> find_plane(const PointCloud& cloud, std::size_t min_inliers,
                                 const PlaneSettings& settings) {
+    if (cloud.normals.size() != cloud.size()) throw InvalidInput("planes: the cloud needs normals");
+    if (settings.trials < 1) throw InvalidInput("planes: trials must be at least 1");
     if (cloud.size() < 3) return std::nullopt;
     const auto tolerance = static_cast<float>(settings.tolerance);
     const auto min_cosine = static_cast<float>(std::cos(settings.max_angle));

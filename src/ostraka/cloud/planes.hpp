@@ -27,6 +27,7 @@ struct Plane {
 /// The plane with the most points near it whose normals agree with it.
 /// @param cloud  finite points with normals.
 /// @return nothing if no plane has at least `min_inliers` points.
+/// @throws InvalidInput if normals are missing or settings.trials is below 1.
 std::optional<Plane> find_plane(const PointCloud& cloud, std::size_t min_inliers,
                                 const PlaneSettings& settings);
 

@@ -50,7 +50,9 @@ Range range_of(const float* values, std::size_t count) {
 }
 
 OSTRAKA_VECTOR_CLONES
-void into_frame(const Support& s, const std::array<float, 9>& r, float* x, float* y, float* z) {
+void into_frame(const Support& s, const std::array<float, 9>& rows, float* x, float* y, float* z) {
+    const float r[9] = {rows[0], rows[1], rows[2], rows[3], rows[4],
+                        rows[5], rows[6], rows[7], rows[8]};
     const float* sx = s.x.data();
     const float* sy = s.y.data();
     const float* sz = s.z.data();

@@ -21,26 +21,65 @@ constexpr std::size_t kChunk = 8;  // keypoints that share scratch memory
 // Weights are integers, so that their sums don't depend on the order of the points.
 constexpr float kUnit = 268435456.0F;  // 2^28; a weight is at most 4
 
-// What each point of a block adds to its own bin and to its four neighbors.
+// What each point of a block adds to its own bin and to the next ones over the cosine, the radius,
+// the inclination and the azimuth.
 struct Votes {
-    std::array<std::int32_t, kBlock> own, cosine, radial, vertical, sideways;  // bins
-    std::array<std::int32_t, kBlock> own_weight, cosine_weight, radial_weight, vertical_weight,
-        sideways_weight;
+    std::array<std::array<std::int32_t, kBlock>, 5> bin, weight;
 };
 
 struct Axes {
-    std::array<float, 3> x, y, z;
+    float xx, xy, xz, yx, yy, yz, zx, zy, zz;  // the frame's rows
 };
 
-inline std::int32_t fixed_point(float weight) {
-    return static_cast<std::int32_t>(weight * kUnit);
+// A cosine as a position among the bins: [0, 10].
+inline float cosine_position(float value) {
+    const float low = value < 1.0F ? value : 1.0F;
+    return (1.0F + (low > -1.0F ? low : -1.0F)) * 5.0F;
+}
+
+// The bin that shares a vote with `step`; wraps over 10 of the 11 bins, as in PCL.
+inline std::int32_t cosine_neighbor(std::int32_t step, float past) {
+    const std::int32_t above = step >= 9 ? step - 9 : step + 1;
+    const std::int32_t below = step == 0 ? 9 : step - 1;
+    return past > 0.0F ? above : below;
+}
+
+// 1 where true. Integers instead of bool, because compilers vectorize them.
+inline std::int32_t is(bool condition) {
+    return condition ? 1 : 0;
+}
+
+// The eighth of a turn about z that (x, y) lies in, counted from -x; on its border as PCL decides.
+inline std::int32_t sector_of(float x, float y) {
+    const float ax = std::fabs(x);
+    const float ay = std::fabs(y);
+    const std::int32_t left = is(y > 0.0F) | (is(y == 0.0F) & is(x < 0.0F));
+    const std::int32_t right = is(x > 0.0F) | (is(x == 0.0F) & is(y > 0.0F));
+    const std::int32_t same_sign =
+        (is(x > 0.0F) & is(y > 0.0F)) | (is(x < 0.0F) & is(y < 0.0F)) | is(x == 0.0F);
+    const std::int32_t octant = (same_sign & is(ax < ay)) | ((1 - same_sign) & is(ax > ay));
+    return 4 * left + 2 * (left ^ right) + octant;
+}
+
+// How far the azimuth is past the middle of its sector, in sectors: [-0.5, 0.5].
+inline float past_sector(float x, float y, std::int32_t sector) {
+    const float eighths = fast_atan2(y, x) * (4.0F / 3.14159265359F);
+    float past = eighths - (static_cast<float>(sector) - 3.5F);
+    past = past < 0.5F ? past : 0.5F;
+    return past > -0.5F ? past : -0.5F;
+}
+
+// How far the inclination from the z axis is past the middle of its half, in halves.
+inline float past_half(float x, float y, float z) {
+    constexpr float kQuarterTurn = 1.57079632679F;
+    const float inclination = fast_atan2(std::sqrt(x * x + y * y), z);
+    return (inclination - (z > 0.0F ? 0.5F : 1.5F) * kQuarterTurn) / kQuarterTurn;
 }
 
 // Quadrilinear interpolation: over the cosine, the radius, the inclination and the azimuth.
 OSTRAKA_VECTOR_CLONES
 void vote_block(const Support& s, std::size_t first, std::size_t count, const Axes& axes,
-                float radius, Votes& votes) {
-    constexpr float kQuarterTurn = 1.57079632679F;
+                float radius, Votes& v) {
     const float* sx = s.x.data() + first;
     const float* sy = s.y.data() + first;
     const float* sz = s.z.data() + first;
@@ -50,87 +89,55 @@ void vote_block(const Support& s, std::size_t first, std::size_t count, const Ax
     const float* snz = s.nz.data() + first;
     const float half = radius * 0.5F;
     const float inverse_half = 1.0F / half;
+    const Axes a = axes;
 #pragma GCC ivdep
     for (std::size_t i = 0; i < count; ++i) {
-        const float x = sx[i] * axes.x[0] + sy[i] * axes.x[1] + sz[i] * axes.x[2];
-        const float y = sx[i] * axes.y[0] + sy[i] * axes.y[1] + sz[i] * axes.y[2];
-        const float z = sx[i] * axes.z[0] + sy[i] * axes.z[1] + sz[i] * axes.z[2];
+        const float x = sx[i] * a.xx + sy[i] * a.xy + sz[i] * a.xz;
+        const float y = sx[i] * a.yx + sy[i] * a.yy + sz[i] * a.yz;
+        const float z = sx[i] * a.zx + sy[i] * a.zy + sz[i] * a.zz;
         const float distance = sd[i];
-        const float normal_z = snx[i] * axes.z[0] + sny[i] * axes.z[1] + snz[i] * axes.z[2];
-        const bool valid = (distance > 0.0F) & (normal_z == normal_z);
+        const float normal_z = snx[i] * a.zx + sny[i] * a.zy + snz[i] * a.zz;
+        const float valid = distance > 0.0F ? (normal_z == normal_z ? kUnit : 0.0F) : 0.0F;
 
         // The volume: azimuth sector x 4 + outer half x 2 + upper half.
-        const float ax = std::fabs(x);
-        const float ay = std::fabs(y);
-        const std::int32_t left = ((y > 0.0F) | ((y == 0.0F) & (x < 0.0F))) ? 1 : 0;
-        const bool right = (x > 0.0F) | ((x == 0.0F) & (y > 0.0F));
-        const std::int32_t side = right ? 1 - left : left;
-        const bool same_sign = ((x > 0.0F) & (y > 0.0F)) | ((x < 0.0F) & (y < 0.0F)) | (x == 0.0F);
-        const std::int32_t octant = same_sign ? (ax >= ay ? 0 : 1) : (ax > ay ? 1 : 0);
-        const std::int32_t sector = 4 * left + 2 * side + octant;
-        const std::int32_t outer = distance > half ? 1 : 0;
-        const std::int32_t upper = z > 0.0F ? 1 : 0;
-        const std::int32_t volume = 4 * sector + 2 * outer + upper;
+        const std::int32_t sector = sector_of(x, y);
+        const std::int32_t volume = 4 * sector + 2 * is(distance > half) + is(z > 0.0F);
+        const float position = cosine_position(normal_z);
+        const auto step = static_cast<std::int32_t>(position + 0.5F);
 
-        // The cosine; its neighbor wraps over 10 of the 11 bins, as in PCL.
-        float cosine = normal_z < 1.0F ? normal_z : 1.0F;
-        cosine = cosine > -1.0F ? cosine : -1.0F;
-        const float position = (1.0F + cosine) * 5.0F;
-        const auto step = static_cast<std::int32_t>(valid ? position + 0.5F : 0.0F);
-        const float past = position - static_cast<float>(step);
-        const std::int32_t above = step >= 9 ? step - 9 : step + 1;
-        const std::int32_t below = step == 0 ? 9 : step - 1;
-        const float cosine_share = std::fabs(past);
-        const std::int32_t bin = volume * kCosineBins + step;
-
-        // The radius: distance to the middle of the own shell, in shells.
-        const float radial = (distance - (outer != 0 ? 1.5F : 0.5F) * half) * inverse_half;
-        const bool radial_votes = outer != 0 ? radial <= 0.0F : radial >= 0.0F;
-        const float radial_share = std::fabs(radial);
-
-        // The inclination from the z axis: distance to the middle of the own half.
-        const float inclination = fast_atan2(std::sqrt(x * x + y * y), z);
-        const float vertical =
-            (inclination - (upper != 0 ? 0.5F : 1.5F) * kQuarterTurn) / kQuarterTurn;
-        const bool vertical_votes = upper != 0 ? vertical >= 0.0F : vertical <= 0.0F;
-        const float vertical_share = std::fabs(vertical);
-
-        // The azimuth: distance to the middle of the own sector.
-        const bool has_azimuth = (x != 0.0F) | (y != 0.0F);
-        const float turns = fast_atan2(y, x) * (2.0F / kQuarterTurn);
-        float azimuth = turns - (static_cast<float>(sector) - 3.5F);
-        azimuth = azimuth < 0.5F ? azimuth : 0.5F;
-        azimuth = azimuth > -0.5F ? azimuth : -0.5F;
-        const float azimuth_share = has_azimuth ? std::fabs(azimuth) : 1.0F;
+        // How far the point is past the middle of its bin, along each of the four dimensions.
+        const float cosine = position - static_cast<float>(step);
+        const float radial = (distance - (distance > half ? 1.5F : 0.5F) * half) * inverse_half;
+        const float vertical = past_half(x, y, z);
+        const float azimuth = past_sector(x, y, sector);
+        // Away from the border of the sphere and from the poles the next bin gets that share.
+        const float inward = distance > half ? -radial : radial;
+        const float sideways = z > 0.0F ? vertical : -vertical;
+        const float azimuth_share = x != 0.0F || y != 0.0F ? std::fabs(azimuth) : 1.0F;
+        const float own = (1.0F - std::fabs(cosine)) + (1.0F - std::fabs(radial)) +
+                          (1.0F - std::fabs(vertical)) + (1.0F - azimuth_share);
         const std::int32_t turned = (volume + (azimuth > 0.0F ? 4 : kVolumes - 4)) & (kVolumes - 1);
-
-        const float own = (1.0F - cosine_share) + (1.0F - radial_share) + (1.0F - vertical_share) +
-                          (1.0F - azimuth_share);
-        votes.own[i] = bin;
-        votes.cosine[i] = volume * kCosineBins + (past > 0.0F ? above : below);
-        votes.radial[i] = radial_votes ? bin + (outer != 0 ? -2 : 2) * kCosineBins : bin;
-        votes.vertical[i] = vertical_votes ? bin + (upper != 0 ? -1 : 1) * kCosineBins : bin;
-        votes.sideways[i] = turned * kCosineBins + step;
-        votes.own_weight[i] = fixed_point(valid ? own : 0.0F);
-        votes.cosine_weight[i] = fixed_point(valid ? cosine_share : 0.0F);
-        votes.radial_weight[i] = fixed_point(valid & radial_votes ? radial_share : 0.0F);
-        votes.vertical_weight[i] = fixed_point(valid & vertical_votes ? vertical_share : 0.0F);
-        votes.sideways_weight[i] = fixed_point(valid & has_azimuth ? azimuth_share : 0.0F);
+        v.bin[0][i] = volume * kCosineBins + step;
+        v.bin[1][i] = volume * kCosineBins + cosine_neighbor(step, cosine);
+        v.bin[2][i] = (volume ^ 2) * kCosineBins + step;
+        v.bin[3][i] = (volume ^ 1) * kCosineBins + step;
+        v.bin[4][i] = turned * kCosineBins + step;
+        v.weight[0][i] = static_cast<std::int32_t>(own * valid);
+        v.weight[1][i] = static_cast<std::int32_t>(std::fabs(cosine) * valid);
+        v.weight[2][i] = static_cast<std::int32_t>((inward > 0.0F ? inward : 0.0F) * valid);
+        v.weight[3][i] = static_cast<std::int32_t>((sideways > 0.0F ? sideways : 0.0F) * valid);
+        v.weight[4][i] =
+            static_cast<std::int32_t>((azimuth_share < 1.0F ? azimuth_share : 0.0F) * valid);
     }
 }
 
 using Bins = std::array<std::int64_t, kShotLength>;
 
 void count_block(const Votes& votes, std::size_t count, Bins& bins) {
-    const auto add = [&bins](std::int32_t bin, std::int32_t weight) {
-        bins[static_cast<std::size_t>(bin)] += weight;
-    };
     for (std::size_t i = 0; i < count; ++i) {
-        add(votes.own[i], votes.own_weight[i]);
-        add(votes.cosine[i], votes.cosine_weight[i]);
-        add(votes.radial[i], votes.radial_weight[i]);
-        add(votes.vertical[i], votes.vertical_weight[i]);
-        add(votes.sideways[i], votes.sideways_weight[i]);
+        for (std::size_t k = 0; k < votes.bin.size(); ++k) {
+            bins[static_cast<std::size_t>(votes.bin[k][i])] += votes.weight[k][i];
+        }
     }
 }
 
@@ -149,9 +156,8 @@ void normalize(const Bins& bins, std::span<float> row) {
 Mat3f describe_support(const Support& support, float radius, std::span<float> row) {
     const Mat3f frame = shot_frame(support, radius);
     if (!frame.allFinite()) return frame;
-    const Axes axes{{frame(0, 0), frame(0, 1), frame(0, 2)},
-                    {frame(1, 0), frame(1, 1), frame(1, 2)},
-                    {frame(2, 0), frame(2, 1), frame(2, 2)}};
+    const Axes axes{frame(0, 0), frame(0, 1), frame(0, 2), frame(1, 0), frame(1, 1),
+                    frame(1, 2), frame(2, 0), frame(2, 1), frame(2, 2)};
     Bins bins{};
     Votes votes;
     for (std::size_t first = 0; first < support.count; first += kBlock) {

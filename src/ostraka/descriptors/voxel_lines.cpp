@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 
 #include "ostraka/descriptors/vector_clones.hpp"
 
@@ -20,28 +21,52 @@ constexpr std::array<float, kVoxels + 1> kInverse = [] {
     return inverse;
 }();
 
+using Word4 = std::uint64_t __attribute__((vector_size(32)));
+
 // Lines of nearly the same length, side by side.
 struct Lanes {
     std::array<std::uint64_t, kLanes> position, step, length, inside;
 };
 
+__attribute__((always_inline)) inline void load4(const std::uint64_t* from, Word4& to) {
+    std::memcpy(&to, from, sizeof(to));
+}
+
+// Adds to `inside` the voxels at `p`, one a lane.
+__attribute__((always_inline)) inline void look_up(const std::uint64_t* words, const Word4& p,
+                                                   const Word4& counts, Word4& inside) {
+    const Word4 at = (p >> (kFraction - 6) & 0xfc0U) | (p >> (kShift[1] + kFraction) & 0x3fU);
+    const Word4 word = {words[at[0]], words[at[1]], words[at[2]], words[at[3]]};
+    inside += word >> (p >> (kShift[2] + kFraction)) & counts;
+}
+
 OSTRAKA_VECTOR_CLONES
 void trace_lanes(const std::uint64_t* words, Lanes& lanes, std::uint64_t steps) {
-    std::array<std::uint64_t, kLanes> position = lanes.position;
-    const std::array<std::uint64_t, kLanes> step = lanes.step;
-    const std::array<std::uint64_t, kLanes> length = lanes.length;
-    std::array<std::uint64_t, kLanes> inside{};
+    Word4 p;
+    Word4 q;
+    Word4 p_step;
+    Word4 q_step;
+    Word4 p_length;
+    Word4 q_length;
+    load4(lanes.position.data(), p);
+    load4(lanes.position.data() + 4, q);
+    load4(lanes.step.data(), p_step);
+    load4(lanes.step.data() + 4, q_step);
+    load4(lanes.length.data(), p_length);
+    load4(lanes.length.data() + 4, q_length);
+    Word4 p_inside = {};
+    Word4 q_inside = {};
     for (std::uint64_t k = 0; k < steps; ++k) {
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            const std::uint64_t p = position[lane];
-            const std::uint64_t word =
-                words[(p >> (kFraction - 6) & 0xfc0U) | (p >> (kShift[1] + kFraction) & 0x3fU)];
-            const std::uint64_t bit = word >> (p >> (kShift[2] + kFraction)) & 1U;
-            inside[lane] += k < length[lane] ? bit : 0;
-            position[lane] = p + step[lane];
-        }
+        // A lane counts until its line ends; beyond, it may read any word, but none outside the
+        // grid.
+        const Word4 now = Word4{} + k;
+        look_up(words, p, p_length > now ? Word4{} + 1 : Word4{}, p_inside);
+        look_up(words, q, q_length > now ? Word4{} + 1 : Word4{}, q_inside);
+        p += p_step;
+        q += q_step;
     }
-    lanes.inside = inside;
+    std::memcpy(lanes.inside.data(), &p_inside, sizeof(p_inside));
+    std::memcpy(lanes.inside.data() + 4, &q_inside, sizeof(q_inside));
 }
 
 // Line numbers in ascending order of length.

@@ -57,6 +57,9 @@ IcpResult icp(const SurfaceField& target, std::span<const Vec3f> source,
               std::span<const Vec3f> source_normals, const Pose& T_target_source,
               const IcpSettings& settings) {
     if (source.size() != source_normals.size()) throw InvalidInput("ICP: normals are missing");
+    if (!(settings.start_distance > 0.0) || !(settings.end_distance > 0.0)) {
+        throw InvalidInput("ICP: start_distance and end_distance must be positive");
+    }
     IcpResult result;
     result.T_target_source = T_target_source;
     if (source.empty()) return result;

@@ -33,6 +33,7 @@ struct IcpResult {
 /// @param source   points with normals, in their own frame.
 /// @param T_target_source  the first guess.
 /// @return the guess itself, not converged, if fewer than 6 pairs are found.
+/// @throws InvalidInput if normals are missing or a distance isn't positive.
 IcpResult icp(const SurfaceField& target, std::span<const Vec3f> source,
               std::span<const Vec3f> source_normals, const Pose& T_target_source,
               const IcpSettings& settings);

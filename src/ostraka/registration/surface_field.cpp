@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ostraka/base/error.hpp"
 
@@ -31,12 +32,15 @@ SurfaceField::SurfaceField(const PointCloud& surface, double cell, double margin
     high.array() += border;
     const Vec3d extent = (high - low_).cast<double>();
     cell = std::max(cell, std::cbrt(extent.x() * extent.y() * extent.z() / kMaxCells));
+    // A flat surface has no volume, yet it may span too many cells.
+    while (((extent / cell).array().floor() + 1.0).prod() > kMaxCells) cell *= 1.05;
     inverse_cell_ = static_cast<float>(1.0 / cell);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         size_[axis] = 1 + static_cast<int>(extent[static_cast<Eigen::Index>(axis)] / cell);
     }
-    seed_cells(cell);
-    for (int round = 0; round < kRounds; ++round) sweep(cell);
+    std::vector<float> squared;
+    seed_cells(cell, squared);
+    for (int round = 0; round < kRounds; ++round) sweep(cell, squared);
 }
 
 Vec3f SurfaceField::center(int x, int y, int z, double cell) const {
@@ -46,55 +50,61 @@ Vec3f SurfaceField::center(int x, int y, int z, double cell) const {
 }
 
 // Cells that hold surface points know the one nearest to their centers.
-void SurfaceField::seed_cells(double cell) {
+void SurfaceField::seed_cells(double cell, std::vector<float>& squared) {
     nearest_.assign(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
                         static_cast<std::size_t>(size_[2]),
                     kNoIndex);
+    squared.assign(nearest_.size(), std::numeric_limits<float>::infinity());
     for (std::uint32_t i = 0; i < surface_.size(); ++i) {
         const Vec3f at = (surface_.points[i] - low_) * inverse_cell_;
         const auto x = std::clamp(static_cast<int>(at.x()), 0, size_[0] - 1);
         const auto y = std::clamp(static_cast<int>(at.y()), 0, size_[1] - 1);
         const auto z = std::clamp(static_cast<int>(at.z()), 0, size_[2] - 1);
-        offer(nearest_[offset(x, y, z)], i, center(x, y, z, cell));
+        offer(offset(x, y, z), i, center(x, y, z, cell), squared);
     }
 }
 
 // Each cell takes over a neighbor's point if it is nearer: forward along all axes, then back.
-void SurfaceField::sweep(double cell) {
+void SurfaceField::sweep(double cell, std::vector<float>& squared) {
     for (const int direction : {1, -1}) {
         const auto at = [&](int step, int axis) {
             return direction > 0 ? step : size_[static_cast<std::size_t>(axis)] - 1 - step;
         };
         for (int sz = 0; sz < size_[2]; ++sz) {
             for (int sy = 0; sy < size_[1]; ++sy) {
-                sweep_row(at(sy, 1), at(sz, 2), direction, cell);
+                sweep_row(at(sy, 1), at(sz, 2), direction, cell, squared);
             }
         }
     }
 }
 
-void SurfaceField::sweep_row(int y, int z, int direction, double cell) {
+void SurfaceField::sweep_row(int y, int z, int direction, double cell,
+                             std::vector<float>& squared) {
     const int back_y = y - direction;
     const int back_z = z - direction;
-    for (const int along : {1, -1}) {
-        for (int step = 0; step < size_[0]; ++step) {
-            const int x = along > 0 ? step : size_[0] - 1 - step;
-            const Vec3f middle = center(x, y, z, cell);
-            std::uint32_t& own = nearest_[offset(x, y, z)];
-            if (step > 0) offer(own, nearest_[offset(x - along, y, z)], middle);
-            if (back_y >= 0 && back_y < size_[1])
-                offer(own, nearest_[offset(x, back_y, z)], middle);
-            if (back_z >= 0 && back_z < size_[2])
-                offer(own, nearest_[offset(x, y, back_z)], middle);
-        }
+    const bool has_y = back_y >= 0 && back_y < size_[1];
+    const bool has_z = back_z >= 0 && back_z < size_[2];
+    for (int x = 0; x < size_[0]; ++x) {
+        const Vec3f middle = center(x, y, z, cell);
+        const std::size_t own = offset(x, y, z);
+        if (x > 0) offer(own, nearest_[own - 1], middle, squared);
+        if (has_y) offer(own, nearest_[offset(x, back_y, z)], middle, squared);
+        if (has_z) offer(own, nearest_[offset(x, y, back_z)], middle, squared);
+    }
+    for (int x = size_[0] - 2; x >= 0; --x) {
+        const std::size_t own = offset(x, y, z);
+        offer(own, nearest_[own + 1], center(x, y, z, cell), squared);
     }
 }
 
-void SurfaceField::offer(std::uint32_t& own, std::uint32_t other, const Vec3f& middle) const {
-    if (other == kNoIndex || other == own) return;
-    const bool nearer = own == kNoIndex || (surface_.points[other] - middle).squaredNorm() <
-                                               (surface_.points[own] - middle).squaredNorm();
-    if (nearer) own = other;
+void SurfaceField::offer(std::size_t own, std::uint32_t other, const Vec3f& middle,
+                         std::vector<float>& squared) {
+    if (other == kNoIndex || other == nearest_[own]) return;
+    const float distance = (surface_.points[other] - middle).squaredNorm();
+    if (distance < squared[own]) {
+        squared[own] = distance;
+        nearest_[own] = other;
+    }
 }
 
 }  // namespace ostraka

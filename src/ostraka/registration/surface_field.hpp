@@ -23,13 +23,14 @@ class SurfaceField {
     /// kNoIndex outside the grid.
     std::uint32_t nearest(const Vec3f& point) const {
         const Vec3f at = (point - low_) * inverse_cell_;
-        const auto x = static_cast<int>(at.x());
-        const auto y = static_cast<int>(at.y());
-        const auto z = static_cast<int>(at.z());
-        const bool inside = at.x() >= 0.0F && at.y() >= 0.0F && at.z() >= 0.0F && x < size_[0] &&
-                            y < size_[1] && z < size_[2];
+        // Compared as floats: a NaN or a far point doesn't fit an int.
+        const bool inside = at.x() >= 0.0F && at.y() >= 0.0F && at.z() >= 0.0F &&
+                            at.x() < static_cast<float>(size_[0]) &&
+                            at.y() < static_cast<float>(size_[1]) &&
+                            at.z() < static_cast<float>(size_[2]);
         if (!inside) return kNoIndex;
-        return nearest_[offset(x, y, z)];
+        return nearest_[offset(static_cast<int>(at.x()), static_cast<int>(at.y()),
+                               static_cast<int>(at.z()))];
     }
     const Vec3f& point(std::uint32_t index) const { return surface_.points[index]; }
     const Vec3f& normal(std::uint32_t index) const { return surface_.normals[index]; }
@@ -40,10 +41,12 @@ class SurfaceField {
         return static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x);
     }
     Vec3f center(int x, int y, int z, double cell) const;
-    void seed_cells(double cell);
-    void sweep(double cell);
-    void sweep_row(int y, int z, int direction, double cell);
-    void offer(std::uint32_t& own, std::uint32_t other, const Vec3f& middle) const;
+    // `squared`: of each cell, the distance from its center to its point.
+    void seed_cells(double cell, std::vector<float>& squared);
+    void sweep(double cell, std::vector<float>& squared);
+    void sweep_row(int y, int z, int direction, double cell, std::vector<float>& squared);
+    void offer(std::size_t own, std::uint32_t other, const Vec3f& middle,
+               std::vector<float>& squared);
 
     PointCloud surface_;
     Vec3f low_ = Vec3f::Zero();

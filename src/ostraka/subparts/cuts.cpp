@@ -43,10 +43,11 @@ std::vector<std::uint32_t> cut_below(const PointCloud& cloud, const Vec3d& direc
         low = std::min(low, axis.dot(point));
         high = std::max(high, axis.dot(point));
     }
-    const float limit = low + static_cast<float>(fraction) * (high - low);
+    // In double, so that rounding doesn't cut the last point off at a fraction of 1.
+    const double limit = double{low} + fraction * (double{high} - double{low});
     std::vector<std::uint32_t> indices;
     for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-        if (axis.dot(cloud.points[i]) <= limit) indices.push_back(i);
+        if (double{axis.dot(cloud.points[i])} <= limit) indices.push_back(i);
     }
     return indices;
 }

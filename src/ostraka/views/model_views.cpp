@@ -18,27 +18,38 @@ constexpr int kMaxPixels = 2000;  // a side of the image; beyond it sampling is 
 
 PinholeCamera view_lens(const MeshShape& shape, const ViewSettings& settings) {
     const double distance = settings.distance * shape.diameter;
+    if (!(distance > shape.radius)) {
+        throw InvalidInput(fmt::format("views: a distance of {:.6g} diameters is inside the model",
+                                       settings.distance));
+    }
+    if (!(settings.rays_per_sample > 0.0)) {
+        throw InvalidInput("views: rays_per_sample must be positive");
+    }
     const double spacing = settings.sampling / settings.rays_per_sample;
     PinholeCamera camera;
     camera.fx = camera.fy = distance / spacing;
     // The nearest point of the enclosing ball is seen under the widest angle.
     const double half =
         camera.fx * shape.radius / std::sqrt(distance * distance - shape.radius * shape.radius);
-    const int pixels = 2 * static_cast<int>(std::ceil(half)) + 3;
-    if (pixels > kMaxPixels) {
+    const double pixels = 2.0 * std::ceil(half) + 3.0;
+    if (!(pixels <= kMaxPixels)) {
         throw InvalidInput(fmt::format(
             "sampling {:.6g} is too fine for a model of diameter {:.6g}: at least {:.6g}",
             settings.sampling, shape.diameter, settings.sampling * pixels / kMaxPixels));
     }
-    camera.width = camera.height = pixels;
-    camera.cx = camera.cy = (pixels - 1) / 2.0;
+    camera.width = camera.height = static_cast<int>(pixels);
+    camera.cx = camera.cy = (pixels - 1.0) / 2.0;
     return camera;
 }
 
 }  // namespace
 
 Pose view_camera(const MeshShape& shape, const ViewSettings& settings, int index) {
-    const Vec3d local = viewpoints(settings.count)[static_cast<std::size_t>(index)];
+    const std::vector<Vec3d> locals = viewpoints(settings.count);
+    if (index < 0 || index >= settings.count) {
+        throw InvalidInput(fmt::format("view {} of {}", index, settings.count));
+    }
+    const Vec3d local = locals[static_cast<std::size_t>(index)];
     const Vec3d direction = shape.axes * local;
     const Vec3d eye = shape.center + settings.distance * shape.diameter * direction;
     return look_at(eye, shape.center, shape.axes.col(2));

@@ -35,7 +35,8 @@ ModelView make_view(const RenderedView& rendered, const ViewSettings& settings, 
 
 /// One view. @param model  the scene that holds the one mesh in its own frame.
 /// @param shape  measure() of that mesh.
-/// @throws InvalidInput if the count isn't an icosahedron's, or sampling isn't positive.
+/// @throws InvalidInput if the count isn't an icosahedron's, `index` isn't below it, or sampling,
+///         distance or rays_per_sample is out of range.
 ModelView make_view(const RayScene& model, const MeshShape& shape, const ViewSettings& settings,
                     int index);
 

@@ -13,7 +13,7 @@ namespace ostraka {
 
 struct RayHit {
     double distance = -1.0;             ///< ray parameter, in lengths of the direction; < 0: no hit
-    std::uint32_t mesh = kNoIndex;      ///< number of the mesh, in the order of add()
+    std::uint32_t mesh = kNoIndex;      ///< number of the mesh, in the order given
     std::uint32_t triangle = kNoIndex;  ///< index into that mesh's triangles
     bool hit() const { return mesh != kNoIndex; }
 };

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/base/parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "ostraka/base/error.hpp"
+
+namespace ostraka {
+namespace {
+
+class Parallel : public testing::Test {
+  protected:
+    ~Parallel() override { set_thread_count(0); }
+
+    // Threads that took part in a loop of items long enough for all of them to join in.
+    static std::size_t threads_used() {
+        std::mutex mutex;
+        std::set<std::thread::id> threads;
+        parallel_for(200, [&](std::size_t) {
+            std::this_thread::sleep_for(std::chrono::microseconds(100));
+            const std::scoped_lock lock(mutex);
+            threads.insert(std::this_thread::get_id());
+        });
+        return threads.size();
+    }
+};
+
+TEST_F(Parallel, VisitsEveryIndexOnce) {
+    for (const int threads : {1, 2, 5, 0}) {
+        set_thread_count(threads);
+        for (const std::size_t count : {0U, 1U, 2U, 7U, 10'000U}) {
+            for (const std::size_t grain : {1U, 3U, 512U, 20'000U}) {
+                std::vector<std::atomic<int>> visits(count);
+                parallel_for(
+                    count, [&](std::size_t i) { ++visits.at(i); }, grain);
+                for (const auto& times : visits) ASSERT_EQ(times, 1);
+            }
+        }
+    }
+}
+
+TEST_F(Parallel, HandsOnAnExceptionAndStaysUsable) {
+    for (const int threads : {1, 4}) {
+        set_thread_count(threads);
+        const auto body = [](std::size_t i) {
+            if (i == 77) throw InvalidInput("item 77");
+        };
+        try {
+            parallel_for(100, body);
+            FAIL() << "no exception";
+        } catch (const InvalidInput& error) {
+            EXPECT_STREQ(error.what(), "item 77");
+        }
+        std::atomic<int> visits = 0;
+        parallel_for(100, [&](std::size_t) { ++visits; });
+        EXPECT_EQ(visits, 100);
+    }
+}
+
+TEST_F(Parallel, UsesNoMoreThreadsThanAllowed) {
+    for (const std::size_t threads : {1U, 2U}) {
+        set_thread_count(static_cast<int>(threads));
+        EXPECT_LE(threads_used(), threads);
+    }
+}
+
+TEST_F(Parallel, OneThreadIsTheCallersOwn) {
+    set_thread_count(1);
+    const std::thread::id caller = std::this_thread::get_id();
+    std::atomic<int> elsewhere = 0;
+    parallel_for(1000, [&](std::size_t) {
+        if (std::this_thread::get_id() != caller) ++elsewhere;
+    });
+    EXPECT_EQ(elsewhere, 0);
+}
+
+TEST_F(Parallel, LoopsNest) {
+    std::vector<std::vector<int>> table(50, std::vector<int>(40, 0));
+    parallel_for(50, [&](std::size_t i) {
+        parallel_for(40, [&, i](std::size_t j) { table[i][j] += static_cast<int>(100 * i + j); });
+    });
+    for (std::size_t i = 0; i < 50; ++i) {
+        for (std::size_t j = 0; j < 40; ++j) {
+            ASSERT_EQ(table[i][j], static_cast<int>(100 * i + j));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ostraka

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/library/retrieval.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "ostraka/base/error.hpp"
+#include "ostraka/cloud/normals.hpp"
+#include "support/simple_models.hpp"
+
+namespace ostraka {
+namespace {
+
+const ModelLibrary& shared_library() {
+    static const ModelLibrary library =
+        build_library(testing::simple_models(), testing::quick_settings());
+    return library;
+}
+
+TEST(EntryIndex, AnEntrysOwnRowIsNearestToIt) {
+    const ModelLibrary& library = shared_library();
+    const EntryIndex index(library);
+    for (std::size_t t = 0; t < library.tables.size(); ++t) {
+        const std::size_t length = descriptor_length(library.tables[t].descriptor);
+        for (std::size_t i = 0; i < library.entries.size(); i += 7) {
+            const auto row = std::span<const float>(library.tables[t].rows).subspan(i * length, length);
+            EXPECT_EQ(index.distances(t, row)[i], 0.0F);
+        }
+    }
+}
+
+TEST(EntryIndex, ScalingARowChangesNothing) {
+    const ModelLibrary& library = shared_library();
+    const EntryIndex index(library);
+    std::vector<float> row(library.tables[0].rows.begin(), library.tables[0].rows.begin() + 308);
+    const auto before = index.distances(0, row);
+    for (float& value : row) value *= 8.0F;
+    EXPECT_EQ(index.distances(0, row), before);
+}
+
+TEST(NearestEntries, AgreesWithSorting) {
+    const std::vector<float> distances = {3.0F, 1.0F, 2.0F, 1.0F, 0.5F};
+    const auto nearest = nearest_entries(distances, 4);
+    ASSERT_EQ(nearest.size(), 4U);
+    EXPECT_EQ(nearest[0].entry, 4U);
+    EXPECT_EQ(nearest[1].entry, 1U);  // ties by index
+    EXPECT_EQ(nearest[2].entry, 3U);
+    EXPECT_EQ(nearest[3].entry, 2U);
+    EXPECT_EQ(nearest_entries(distances, 99).size(), 5U);
+}
+
+TEST(RankModels, VotesDecideThenTheNearestEntry) {
+    ModelLibrary library;
+    library.models.resize(3);
+    for (const std::uint32_t model : {0U, 0U, 1U, 1U, 2U}) library.entries.push_back({.model = model});
+    const std::vector<float> distances = {0.2F, 0.9F, 0.3F, 0.4F, 0.8F};
+    const auto k1 = rank_models(library, distances, 1);
+    EXPECT_EQ(k1[0].model, 0U);
+    EXPECT_EQ(k1[0].score, 1.0);
+    EXPECT_EQ(k1[1].model, 1U);
+    const auto k3 = rank_models(library, distances, 3);
+    EXPECT_EQ(k3[0].model, 1U);
+    EXPECT_EQ(k3[0].votes, 2);
+    EXPECT_EQ(k3[0].best.entry, 2U);
+    EXPECT_EQ(k3[2].model, 2U);
+    EXPECT_EQ(k3[2].votes, 0);
+}
+
+TEST(Classify, NamesTheModelOfAView) {
+    const ModelLibrary& library = shared_library();
+    const EntryIndex index(library);
+    for (std::uint32_t m = 0; m < 2; ++m) {
+        const Model& model = library.models[m];
+        ViewSettings views = library.settings.views;
+        views.count = 12;  // none of the library's viewpoints
+        const ModelView view = make_view(RayScene({model.mesh}), model.shape, views, 3);
+        for (const char* name : {"fused", "esf", "shot"}) {
+            const auto ranking = classify(index, view.cloud, name, 1);
+            EXPECT_EQ(ranking.front().model, m) << name;
+        }
+    }
+    EXPECT_THROW(classify(index, library.models[0].surface, "pfh", 1), InvalidInput);
+}
+
+}  // namespace
+}  // namespace ostraka
