@@ -100,7 +100,7 @@ void run_build(BuildOptions& options) {
     if (!options.descriptors.empty()) settings.descriptors = parse_descriptors(options.descriptors);
     std::vector<ModelSource> models;
     for (const std::string& path : options.models) models.push_back(load_model(path));
-    settings.unit = require_unit(options.unit, size_hint(models));
+    settings.unit = require_unit(options.unit, options.unit.empty() ? size_hint(models) : "");
     settings.views.sensor.seed = settings.seed;
     const ModelLibrary library = build_library(models, settings, progress_bar());
     save_library(library, options.output);

@@ -32,7 +32,7 @@ PointCloud load_segment(const std::string& path, const ClassifyOptions& options,
     const Unit unit = parse_unit(options.unit).value_or(settings.unit);
     cloud.normals.clear();
     cloud = resample(scaled(cloud, unit_factor(unit, settings.unit)), settings.sampling);
-    cloud.normals = estimate_normals(cloud);
+    cloud.normals = estimate_normals_within(cloud, kNormalRadius * settings.sampling);
     cloud = remove_invalid(cloud);
     if (cloud.size() < 10) {
         throw InvalidInput(

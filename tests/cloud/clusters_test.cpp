@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "cloud/test_clouds.hpp"
@@ -155,6 +156,30 @@ TEST(SmoothClusters, SplitABoxCornerIntoItsFaces) {
     }
     EXPECT_EQ(total, cloud.size()) << "points on the creases belong to a face, too";
     EXPECT_GT(on_own_face, total * 95 / 100);
+}
+
+// Two flat sheets that meet in a fillet of 11 rows, which turns by 0.15 radians a row: no pair of
+// neighbors disagrees, only the curvature tells the sheets apart.
+TEST(SmoothClusters, SplitSheetsAtASharpFillet) {
+    PointCloud cloud;
+    Vec3d at(0.0, 0.0, 0.0);
+    for (int row = 0; row < 51; ++row) {
+        const double angle = 0.15 * std::clamp(row - 20, 0, 10);
+        const Vec3d along(std::cos(angle), 0.0, -std::sin(angle));
+        for (int j = 0; j < 20; ++j) {
+            cloud.points.push_back(Vec3d(at + Vec3d(0.0, j, 0.0)).cast<float>());
+            cloud.normals.push_back(Vec3d(std::sin(angle), 0.0, std::cos(angle)).cast<float>());
+        }
+        at += along;
+    }
+    const SmoothnessSettings settings{.tolerance = 3.2, .max_angle = 0.5};
+    const Clusters clusters = smooth_clusters(cloud, settings);
+    ASSERT_EQ(clusters.size(), 2U);
+    EXPECT_EQ(clusters[0].size() + clusters[1].size(), cloud.size());
+    EXPECT_GT(clusters[1].size(), 400U);
+    SmoothnessSettings lenient = settings;
+    lenient.max_curvature = 1.0;
+    EXPECT_EQ(smooth_clusters(cloud, lenient).size(), 1U);
 }
 
 TEST(SmoothClusters, KeepACurvedSurfaceTogether) {

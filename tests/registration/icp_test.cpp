@@ -40,15 +40,15 @@ double misplacement(const PointCloud& source, const Pose& found, const Pose& tru
 
 // Source: other samples of the same surface, in a frame of their own.
 TEST(Icp, RecoversKnownPoses) {
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
-        for (const bool bumpy : {true, false}) {
-            const PointCloud target =
-                bumpy ? shapes::bumpy_ellipsoid(12'000, 11) : shapes::notched_box(12'000, 12);
-            const PointCloud piece =
-                bumpy ? shapes::bumpy_ellipsoid(1500, 21) : shapes::notched_box(1500, 22);
+    for (const bool bumpy : {true, false}) {
+        const PointCloud target =
+            bumpy ? shapes::bumpy_ellipsoid(12'000, 11) : shapes::notched_box(12'000, 12);
+        const PointCloud piece =
+            bumpy ? shapes::bumpy_ellipsoid(1500, 21) : shapes::notched_box(1500, 22);
+        const SurfaceField field(target, 1.0, 20.0);
+        for (std::uint64_t seed = 0; seed < 20; ++seed) {
             const Pose truth = test_clouds::random_pose(seed, 200.0);
             const PointCloud source = transformed(piece, truth.inverse());
-            const SurfaceField field(target, 1.0, 20.0);
             const Pose guess = disturbance(10.0, 0.03 * kSize, seed + 50) * truth;
             ASSERT_GT(misplacement(source, guess, truth), 3.0);
             const IcpResult result = icp(field, source.points, source.normals, guess, kSettings);
@@ -109,6 +109,23 @@ TEST(Icp, IgnoresClutterBeyondTheEndDistance) {
     const IcpResult result =
         icp(field, source.points, source.normals, disturbance(6.0, 2.0, 8), kSettings);
     EXPECT_LT(misplacement(source, result.T_target_source, Pose::Identity()), 0.5);
+}
+
+// A quarter of the points is displaced by 1.6, within the end distance of 2: plain least squares
+// would shift by a quarter of that, the biweight by about a tenth of it.
+TEST(Icp, OutliersWithinReachWeighLittle) {
+    const PointCloud target = shapes::bumpy_ellipsoid(12'000, 1);
+    PointCloud source = shapes::bumpy_ellipsoid(2000, 2);
+    const PointCloud clean = source;
+    for (std::size_t i = 0; i < source.size(); i += 4) {
+        source.points[i] += 1.6F * source.normals[i];
+    }
+    const SurfaceField field(target, 1.0, 20.0);
+    const IcpResult result =
+        icp(field, source.points, source.normals, disturbance(3.0, 1.0, 3), kSettings);
+    EXPECT_TRUE(result.converged);
+    const Vec3d middle = centroid(clean.points);
+    EXPECT_LT((result.T_target_source * middle - middle).norm(), 0.2);
 }
 
 TEST(Icp, APlaneConvergesAlthoughItSlides) {

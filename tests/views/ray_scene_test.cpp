@@ -136,7 +136,7 @@ TEST(RayScene, SphereAgreesWithItsEquation) {
         const double expected = along - std::sqrt(radius * radius - off2);
         const RayHit hit = cast_one(scene, origin, direction);
         ASSERT_TRUE(hit.hit());
-        // Facets of 1.5 degrees lie up to radius * (1 - cos 0.75 degrees * ...) inside the sphere.
+        // Facets of 1.5 degrees lie up to radius * (1 - cos(1.06 degrees)) inside the sphere.
         ASSERT_NEAR(hit.distance, expected, 3e-3);
         const Vec3d outward = (origin + hit.distance * direction).normalized();
         ASSERT_GT(scene.normal(hit).dot(outward), std::cos(0.04));

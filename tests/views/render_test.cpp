@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "mesh/test_meshes.hpp"
 #include "ostraka/base/parallel.hpp"
@@ -58,6 +59,23 @@ TEST(Render, ShowsASphereAsADisk) {
     // at over 1.5 radians return nothing.
     const double radius = 100.0 * 2.0 / std::sqrt(400.0 - 4.0);
     EXPECT_NEAR(static_cast<double>(seen) / (kPi * radius * radius), 1.0, 0.06);
+}
+
+TEST(Render, WindingDoesNotMatter) {
+    TriangleMesh mesh = test_meshes::lopsided(20);
+    const Pose T_camera_world = look_at({9, 8, 20}, {0, 0, 0});
+    const RenderedView outward = render(RayScene({mesh}), kCamera, T_camera_world);
+    for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+    const RenderedView inward = render(RayScene({mesh}), kCamera, T_camera_world);
+    EXPECT_EQ(outward.mesh, inward.mesh);
+    std::size_t seen = 0;
+    for (std::size_t pixel = 0; pixel < outward.mesh.size(); ++pixel) {
+        if (outward.mesh[pixel] == kNoIndex) continue;
+        ++seen;
+        ASSERT_LT((outward.normals[pixel] - inward.normals[pixel]).norm(), 1e-5F);
+        ASSERT_LT((outward.cloud.points[pixel] - inward.cloud.points[pixel]).norm(), 1e-5F);
+    }
+    EXPECT_GT(seen, 300U);
 }
 
 TEST(Render, NearMeshHidesTheFarOne) {

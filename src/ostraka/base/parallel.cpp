@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <memory>
 #include <mutex>
@@ -23,10 +24,14 @@ void set_thread_count(int count) {
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
                   std::size_t grain) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-                      });
+    // Isolated: a thread that waits here for an inner loop doesn't start another item of an outer
+    // one, which would pile up memory and break thread-local scratch space.
+    tbb::this_task_arena::isolate([&] {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+                          });
+    });
 }
 
 }  // namespace ostraka

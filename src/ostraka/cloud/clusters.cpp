@@ -108,27 +108,37 @@ ProximityGraph proximity_graph(std::span<const Vec3f> points, double tolerance) 
 
 std::vector<std::uint32_t> largest_group(const ProximityGraph& graph,
                                          std::span<const std::uint32_t> indices) {
-    std::vector<bool> waiting(graph.starts.size() - 1, false);
-    for (const std::uint32_t i : indices) waiting[i] = true;
+    // 0: not asked for or already in a group; 1: waiting.
+    std::vector<std::uint8_t> waiting(graph.starts.size() - 1, 0);
+    for (const std::uint32_t i : indices) waiting[i] = 1;
     std::vector<std::uint32_t> largest;
     std::vector<std::uint32_t> group;
+    std::size_t left = indices.size();
     for (const std::uint32_t seed : indices) {
-        if (!waiting[seed]) continue;
-        waiting[seed] = false;
+        if (waiting[seed] == 0) continue;
+        if (left <= largest.size()) break;  // no later group can be larger
+        waiting[seed] = 0;
         group.assign(1, seed);
         for (std::size_t head = 0; head < group.size(); ++head) {
             const std::uint32_t i = group[head];
             for (std::uint32_t n = graph.starts[i]; n < graph.starts[i + 1]; ++n) {
                 const std::uint32_t j = graph.neighbors[n];
-                if (!waiting[j]) continue;
-                waiting[j] = false;
+                if (waiting[j] == 0) continue;
+                waiting[j] = 0;
                 group.push_back(j);
             }
         }
+        left -= group.size();
         if (group.size() > largest.size()) largest = group;
     }
-    std::sort(largest.begin(), largest.end());
-    return largest;
+    // Ascending order by marking, which is faster than sorting.
+    for (const std::uint32_t i : largest) waiting[i] = 2;
+    std::vector<std::uint32_t> ascending;
+    ascending.reserve(largest.size());
+    for (const std::uint32_t i : indices) {
+        if (waiting[i] == 2) ascending.push_back(i);
+    }
+    return ascending;
 }
 
 Clusters smooth_clusters(const PointCloud& cloud, const SmoothnessSettings& settings) {

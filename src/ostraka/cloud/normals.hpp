@@ -8,6 +8,9 @@
 
 namespace ostraka {
 
+/// Radius of the neighborhoods in views and scans, in sampling distances of a resampled cloud.
+inline constexpr double kNormalRadius = 2.3;
+
 struct NormalSettings {
     int neighbors = 20;  ///< points in each fit, the point itself included; at least 3
 };
@@ -22,5 +25,10 @@ std::vector<Vec3f> estimate_normals(const PointCloud& cloud, const NormalSetting
 /// The same on a tree that exists already. @param tree over cloud.points.
 std::vector<Vec3f> estimate_normals(const PointCloud& cloud, const KdTree& tree,
                                     const NormalSettings& settings = {});
+
+/// The same with all points closer than `radius` instead of a number of neighbors: several times
+/// faster, and as good on a cloud of even density (see resample()).
+/// @param radius  in the cloud's unit, positive; about 2.2 sampling distances hold 15 to 20 points.
+std::vector<Vec3f> estimate_normals_within(const PointCloud& cloud, double radius);
 
 }  // namespace ostraka

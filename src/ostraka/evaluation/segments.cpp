@@ -21,7 +21,7 @@ std::vector<LabeledSegment> segments_of(const SimulatedScene& scene, double samp
         }
         LabeledSegment segment{truth.model, truth.visible_fraction, {}};
         segment.cloud = resample(select(scene.cloud, pixels), sampling);
-        segment.cloud.normals = estimate_normals(segment.cloud);
+        segment.cloud.normals = estimate_normals_within(segment.cloud, kNormalRadius * sampling);
         segment.cloud = remove_invalid(segment.cloud);
         if (segment.cloud.size() >= settings.min_points) segments.push_back(std::move(segment));
     }

@@ -237,8 +237,11 @@ ModelLibrary build_library(std::span<const ModelSource> models, const LibrarySet
     library.settings = completed(settings, models);
     const auto views = static_cast<std::size_t>(library.settings.views.count);
     SharedProgress view_progress(progress, "views", views * models.size());
-    for (const ModelSource* source : sorted) {
-        BuiltModel built = build_model(*source, library.settings, view_progress);
+    std::vector<BuiltModel> all(sorted.size());
+    parallel_for(sorted.size(), [&](std::size_t m) {
+        all[m] = build_model(*sorted[m], library.settings, view_progress);
+    });
+    for (BuiltModel& built : all) {
         for (Entry& entry : built.entries) {
             entry.model = static_cast<std::uint32_t>(library.models.size());
             library.entries.push_back(std::move(entry));

@@ -29,22 +29,24 @@ std::vector<std::uint32_t> spread(const std::vector<Vec3f>& points, std::size_t 
 }  // namespace
 
 double overlap(const ElementSet& a, const ElementSet& b) {
-    float result = 0.0F;
-    overlaps(a, {&b, 1}, {&result, 1});
-    return double{result};
+    int common = 0;
+    count_common(a, {&b, 1}, {&common, 1});
+    const int either = count_elements(a) + count_elements(b) - common;
+    return either > 0 ? static_cast<double>(common) / either : 0.0;
 }
 
-// Integer popcounts and one division: the same bits on every machine.
-__attribute__((target_clones("default", "popcnt"))) void overlaps(
-    const ElementSet& a, std::span<const ElementSet> others, std::span<float> result) {
+int count_elements(const ElementSet& set) {
+    int count = 0;
+    for (const std::uint64_t word : set) count += std::popcount(word);
+    return count;
+}
+
+__attribute__((target_clones("default", "popcnt", "arch=icelake-server"))) void count_common(
+    const ElementSet& a, std::span<const ElementSet> others, std::span<int> result) {
     for (std::size_t i = 0; i < others.size(); ++i) {
         int common = 0;
-        int either = 0;
-        for (std::size_t w = 0; w < a.size(); ++w) {
-            common += std::popcount(a[w] & others[i][w]);
-            either += std::popcount(a[w] | others[i][w]);
-        }
-        result[i] = either > 0 ? static_cast<float>(common) / static_cast<float>(either) : 0.0F;
+        for (std::size_t w = 0; w < a.size(); ++w) common += std::popcount(a[w] & others[i][w]);
+        result[i] = common;
     }
 }
 

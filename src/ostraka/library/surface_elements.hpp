@@ -20,9 +20,12 @@ using ElementSet = std::array<std::uint64_t, kSurfaceElements / 64>;
 /// Intersection over union of two sets, 0 to 1; 0 if both are empty.
 double overlap(const ElementSet& a, const ElementSet& b);
 
-/// overlap() of one set with many, into `result` (same length). Popcounts run in hardware if
-/// present.
-void overlaps(const ElementSet& a, std::span<const ElementSet> others, std::span<float> result);
+/// Number of elements in a set.
+int count_elements(const ElementSet& set);
+
+/// Elements that one set shares with each of many, into `result` (same length). The popcounts run
+/// in hardware where there is any: integers, so the same numbers everywhere.
+void count_common(const ElementSet& a, std::span<const ElementSet> others, std::span<int> result);
 
 /// The Voronoi cells of evenly spread points on a surface.
 class SurfaceElements {

@@ -8,7 +8,7 @@
 namespace ostraka {
 namespace {
 
-constexpr int kDirections = 800;       // extreme points are sought along so many directions
+constexpr int kDirections = 400;       // extreme points are sought along so many directions
 constexpr int kBallIterations = 2000;  // the error falls as 1 / sqrt(iterations)
 
 // Vertices that are extreme along one of many directions: enough of the hull for ball and diameter.

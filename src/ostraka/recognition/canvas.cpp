@@ -2,6 +2,7 @@
 #include "ostraka/recognition/canvas.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ostraka/base/error.hpp"

@@ -22,20 +22,21 @@ constexpr Color kView{72, 176, 240};     // a whole view
 constexpr Color kSubpart{245, 158, 11};  // a part of one
 constexpr Color kText{240, 242, 246};
 constexpr Color kQuietText{150, 157, 170};
-constexpr double kFaint = 0.2;  // opacity of the model around an entry
-constexpr double kCap = 9.0;    // height of capitals in captions, pixels
-constexpr int kGap = 8;         // pixels between tiles
-constexpr int kMargin = 20;     // pixels around the sheet
-constexpr int kTitle = 34;      // rows above a model's tiles
-constexpr int kCaption = 22;    // rows below an entry's tile
+constexpr double kFaint = 0.2;           // opacity of the model around an entry
+constexpr double kCap = 9.0;             // height of capitals in captions, pixels
+constexpr std::size_t kFineModels = 10;  // more are drawn with one ray a pixel, to save time
+constexpr int kGap = 8;                  // pixels between tiles
+constexpr int kMargin = 20;              // pixels around the sheet
+constexpr int kTitle = 34;               // rows above a model's tiles
+constexpr int kCaption = 22;             // rows below an entry's tile
 
-// A model's pixels in a tile: brightness, or less than 0 where the tile is empty.
+// What the rays through a tile's samples hit.
 struct TileImage {
     int side = 0;
     PinholeCamera camera;
     Pose T_camera_model = Pose::Identity();
-    std::vector<float> depth;
-    std::vector<float> shade;
+    std::vector<float> depth;  // 0: nothing
+    std::vector<float> shade;  // brightness, 0 to 1
 };
 
 // A camera at `eye` whose picture just holds the model's ball.
@@ -107,26 +108,32 @@ Color lit(Color color, double shade) {
     return mix(color, Color{255, 255, 255}, shade - 0.8);
 }
 
-// Draws at twice the size and averages, for smooth edges.
-void draw_tile(Image& image, const Rectangle& area, const TileImage& fine,
+// Averages the samples of each pixel, for smooth edges.
+void draw_tile(Image& image, const Rectangle& area, const TileImage& tile,
                const std::vector<float>& covered, Color color) {
+    const int fine = tile.side / area.width;
+    const double share = 1.0 / (fine * fine);
     for (int y = 0; y < area.height; ++y) {
         for (int x = 0; x < area.width; ++x) {
-            std::array<double, 3> sum{};
-            for (int k = 0; k < 4; ++k) {
-                const std::size_t i =
-                    static_cast<std::size_t>(2 * y + k / 2) * static_cast<std::size_t>(fine.side) +
-                    static_cast<std::size_t>(2 * x + k % 2);
-                Color sample = kTile;
-                const double shade = fine.shade[i];
-                if (fine.depth[i] > 0.0F) {
-                    sample = mix(kTile, lit(kModel, shade), covered.empty() ? 1.0 : kFaint);
-                    if (!covered.empty()) sample = mix(sample, lit(color, shade), covered[i]);
-                }
-                for (std::size_t c = 0; c < 3; ++c) sum[c] += 0.25 * sample[c];
+            double hits = 0.0;
+            double shade = 0.0;
+            double inside = 0.0;
+            for (int k = 0; k < fine * fine; ++k) {
+                const std::size_t i = static_cast<std::size_t>(fine * y + k / fine) *
+                                          static_cast<std::size_t>(tile.side) +
+                                      static_cast<std::size_t>(fine * x + k % fine);
+                if (!(tile.depth[i] > 0.0F)) continue;
+                hits += 1.0;
+                shade += double{tile.shade[i]};
+                inside += covered.empty() ? 0.0 : double{covered[i]};
             }
-            Color mean;
-            for (std::size_t c = 0; c < 3; ++c) mean[c] = static_cast<std::uint8_t>(sum[c] + 0.5);
+            Color mean = kTile;
+            if (hits > 0.0) {
+                const Color model =
+                    mix(kTile, lit(kModel, shade / hits), covered.empty() ? 1.0 : kFaint);
+                const Color whole = mix(model, lit(color, shade / hits), inside / hits);
+                mean = mix(kTile, whole, hits * share);
+            }
             blend(image, area.x + x, area.y + y, mean);
         }
     }
@@ -154,6 +161,7 @@ struct Block {
 struct Sheet {
     int width = 0;
     int height = 0;
+    int fine = 2;  // samples along a pixel's side
     std::vector<Block> blocks;
 };
 
@@ -184,6 +192,7 @@ Sheet plan(const ModelLibrary& library, const ContactSheetSettings& settings) {
         sheet.blocks.push_back(std::move(block));
     }
     sheet.height = top + kMargin;
+    sheet.fine = sheet.blocks.size() > kFineModels ? 1 : 2;
     return sheet;
 }
 
@@ -213,7 +222,7 @@ Vec3d three_quarter(const MeshShape& shape) {
 }
 
 void draw_block(Image& image, const Block& block, const ModelLibrary& library,
-                const ContactSheetSettings& settings) {
+                const ContactSheetSettings& settings, int fine) {
     const Model& model = library.models[block.model];
     const RayScene scene({model.mesh});
     const int first_row = block.top + kTitle;
@@ -223,7 +232,7 @@ void draw_block(Image& image, const Block& block, const ModelLibrary& library,
     // The model's own tile is item 0, entry i is item i + 1: all write their own pixels.
     parallel_for(block.shown.size() + 1, [&](std::size_t item) {
         if (item == 0) {
-            TileImage tile = place_tile(model, eye, 2 * model_area.width);
+            TileImage tile = place_tile(model, eye, fine * model_area.width);
             cast_tile(tile, scene);
             draw_tile(image, model_area, tile, {}, kModel);
             return;
@@ -234,7 +243,7 @@ void draw_block(Image& image, const Block& block, const ModelLibrary& library,
                                  static_cast<int>(i % columns) * (settings.tile + kGap),
                              first_row + static_cast<int>(i / columns) * (settings.tile + kCaption),
                              settings.tile, settings.tile};
-        TileImage tile = place_tile(model, entry.cloud.viewpoint.cast<double>(), 2 * area.width);
+        TileImage tile = place_tile(model, entry.cloud.viewpoint.cast<double>(), fine * area.width);
         cast_tile(tile, scene);
         draw_tile(image, area, tile, splat(tile, entry.cloud, library.settings.sampling),
                   entry.direction < 0 ? kView : kSubpart);
@@ -279,7 +288,7 @@ Image draw_contact_sheet(const ModelLibrary& library, const ContactSheetSettings
     draw_heading(image, library, sheet);
     for (const Block& block : sheet.blocks) {
         draw_title(image, block, library);
-        draw_block(image, block, library, settings);
+        draw_block(image, block, library, settings, sheet.fine);
     }
     return image;
 }

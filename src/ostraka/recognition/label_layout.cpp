@@ -7,11 +7,12 @@
 namespace ostraka {
 namespace {
 
-constexpr int kStep = 6;              // pixels between the places tried
-constexpr int kGap = 6;               // pixels between boxes
-constexpr double kHiding = 14.0;      // of a whole box, in box widths of distance
-constexpr double kCrossing = 2.0;     // of two leaders, in box widths
-constexpr double kWantedLeader = 34;  // pixels; shorter ones crowd the anchor
+constexpr int kStep = 6;               // pixels between the places tried
+constexpr int kGap = 6;                // pixels between boxes
+constexpr double kHiding = 9.0;        // of a whole box, in box widths of distance
+constexpr double kCrossing = 2.0;      // of two leaders, in box widths
+constexpr double kLongLeader = 120.0;  // pixels, at which a leader costs twice its length
+constexpr double kWantedLeader = 34;   // pixels; shorter ones crowd the anchor
 
 // Sums of the costs above and to the left of each pixel.
 class CostSums {
@@ -76,7 +77,8 @@ double cost_of(const Rectangle& box, const LabelRequest& request, const CostSums
                const std::vector<Placed>& placed, double limit) {
     const Vec2d start = leader_start(box, request.anchor);
     const double length = (start - request.anchor).norm();
-    double cost = length + 1.5 * std::max(0.0, kWantedLeader - length);
+    double cost =
+        length * (1.0 + length / kLongLeader) + 1.5 * std::max(0.0, kWantedLeader - length);
     const double covered = sums.inside(grown(box, 3));
     cost += kHiding * covered / std::max(1, box.height);
     if (cost >= limit) return -1.0;

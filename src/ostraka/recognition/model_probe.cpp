@@ -10,6 +10,7 @@
 namespace ostraka {
 namespace {
 
+constexpr double kFieldCell = 1.5;     // sampling distances
 constexpr double kFieldMargin = 0.1;   // of the diameter: how far off a pose may be
 constexpr double kViewDistance = 3.0;  // diameters
 constexpr double kHitTolerance = 1.0;  // sampling distances
@@ -34,7 +35,7 @@ std::vector<std::uint32_t> spread(const std::vector<Vec3f>& points, std::size_t 
 
 ModelProbe::ModelProbe(const Model& model, double sampling)
     : model_(&model),
-      field_(model.surface, sampling, kFieldMargin * model.shape.diameter),
+      field_(model.surface, kFieldCell * sampling, kFieldMargin * model.shape.diameter),
       rays_({model.mesh}) {
     for (const std::uint32_t i : spread(model.surface.points, kProbeSamples)) {
         samples_.push_back(model.surface.points[i]);

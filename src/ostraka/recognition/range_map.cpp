@@ -121,4 +121,36 @@ Vec3d RangeMap::direction(std::uint32_t cell) const {
     return R_map_scene_.cast<double>().transpose() * local;
 }
 
+std::vector<std::uint32_t> RangeMap::cells_around(const Vec3d& center, double radius) const {
+    const Vec3d offset = R_map_scene_.cast<double>() * (center - viewpoint_.cast<double>());
+    const double distance = offset.norm();
+    const double angle = distance > radius ? std::asin(radius / distance) : kPi;
+    const double tilt = std::acos(std::clamp(offset.z() / std::max(distance, 1e-300), -1.0, 1.0));
+    Vec2d low(-1e9, -1e9);
+    Vec2d high(1e9, 1e9);
+    if (tilt + angle < 0.9 * kPi) {
+        // A circle of directions projects to a circle: its ends lie on the line through the middle.
+        const double inner = std::tan((tilt - angle) / 2.0);
+        const double outer = std::tan((tilt + angle) / 2.0);
+        Vec2d axis(offset.x(), offset.y());
+        axis = axis.norm() > 0.0 ? Vec2d(axis.normalized()) : Vec2d(1.0, 0.0);
+        const double scale = double{cells_per_radian_};
+        const Vec2d middle = scale * (inner + outer) / 2.0 * axis;
+        const double extent = scale * (outer - inner) / 2.0 + 1.0;
+        const Vec2d origin(double{low_u_}, double{low_v_});
+        low = middle - origin - Vec2d::Constant(extent);
+        high = middle - origin + Vec2d::Constant(extent);
+    }
+    const auto clamped = [](double value, std::uint32_t size) {
+        return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(size)));
+    };
+    std::vector<std::uint32_t> cells;
+    for (std::uint32_t v = clamped(low.y(), height_); v < clamped(high.y() + 1.0, height_); ++v) {
+        for (std::uint32_t u = clamped(low.x(), width_); u < clamped(high.x() + 1.0, width_); ++u) {
+            cells.push_back(v * width_ + u);
+        }
+    }
+    return cells;
+}
+
 }  // namespace ostraka

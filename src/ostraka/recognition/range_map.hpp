@@ -43,6 +43,8 @@ class RangeMap {
     std::size_t size() const { return cells_.size(); }
     /// Unit direction in the scan's frame through the middle of a cell.
     Vec3d direction(std::uint32_t cell) const;
+    /// The cells whose directions may meet a ball, ascending: a rectangle around its outline.
+    std::vector<std::uint32_t> cells_around(const Vec3d& center, double radius) const;
     const Vec3f& viewpoint() const { return viewpoint_; }
     std::uint32_t width() const { return width_; }
     std::uint32_t height() const { return height_; }

@@ -56,7 +56,7 @@ Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
     check_size(valid, raw.size(), model_diameter);
     PointCloud cloud = resample(valid, sampling);
     cloud.colors.clear();
-    cloud.normals = estimate_normals(cloud);
+    cloud.normals = estimate_normals_within(cloud, kNormalRadius * sampling);
     cloud = remove_invalid(cloud);
     if (cloud.size() < kMinPoints) {
         throw InvalidInput(

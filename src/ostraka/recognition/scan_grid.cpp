@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ostraka/base/parallel.hpp"
@@ -106,7 +107,7 @@ ScanGrid average_cells(const std::vector<GridVertex>& points, const PinholeCamer
     return grid;
 }
 
-// Between two vertices on opposite sides of a hole, where one surface spans it.
+// Between two vertices on opposite sides of a hole, where one surface spans it or it is small.
 GridVertex bridge(const ScanGrid& grid, int column, int row, int dx, int dy, double focal) {
     const auto look = [&](int direction) -> std::pair<GridVertex, int> {
         for (int step = 1; step <= kHoleReach; ++step) {
@@ -121,7 +122,12 @@ GridVertex bridge(const ScanGrid& grid, int column, int row, int dx, int dy, dou
     if (!a.valid()) return {};
     const auto [b, b_steps] = look(1);
     if (!b.valid() || a_steps + b_steps > kHoleReach + 1) return {};
-    if (!joined(a, b, focal)) return {};
+    if (!joined(a, b, focal)) {
+        // What is lost on a contour belongs to what lies behind.
+        if (a_steps + b_steps > kHoleReach) return {};
+        const float behind = std::max(a.depth, b.depth);
+        return {0.5F * (a.u + b.u), 0.5F * (a.v + b.v), behind, 0.0F};
+    }
     const float t = static_cast<float>(a_steps) / static_cast<float>(a_steps + b_steps);
     return {a.u + t * (b.u - a.u), a.v + t * (b.v - a.v), a.depth + t * (b.depth - a.depth), 0.0F};
 }
@@ -193,6 +199,7 @@ ScanGrid make_grid(const PointCloud& scene, const PictureCamera& camera) {
     if (scene.organized()) {
         ScanGrid grid{scene.width, scene.height, 1.0F, std::move(points)};
         grid.spacing = typical_spacing(grid);
+        fill_holes(grid, camera.pinhole.fx);
         return grid;
     }
     ScanGrid grid = average_cells(points, camera.pinhole);

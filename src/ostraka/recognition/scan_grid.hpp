@@ -28,8 +28,8 @@ struct ScanGrid {
     }
 };
 
-/// An organized scan's own grid; any other scan's points averaged in square cells, with small holes
-/// filled. Not shaded.
+/// An organized scan's own grid; any other scan's points averaged in square cells. Holes of a few
+/// vertices are filled. Not shaded.
 ScanGrid make_grid(const PointCloud& scene, const PictureCamera& camera);
 
 /// Whether no jump in depth separates two vertices: the surface between them is at most 80 degrees

@@ -12,20 +12,6 @@ constexpr double kMinSlope = 0.3;      // cosine of incidence below which tolera
 constexpr double kMaxShared = 0.35;    // of a hypothesis' support that better ones may have claimed
 constexpr std::size_t kMinSupport = 40;  // cells; fewer say nothing
 
-// Cells whose directions may meet the model: a window around its enclosing ball.
-std::vector<std::uint32_t> cells_around(const RangeMap& ranges, const Vec3d& center,
-                                        double radius) {
-    std::vector<std::uint32_t> cells;
-    const Vec3d to_center = center - ranges.viewpoint().cast<double>();
-    const double distance = to_center.norm();
-    const double min_cosine =
-        distance > radius ? std::sqrt(1.0 - radius * radius / (distance * distance)) : -1.0;
-    for (std::uint32_t cell = 0; cell < ranges.size(); ++cell) {
-        if (ranges.direction(cell).dot(to_center) >= min_cosine * distance) cells.push_back(cell);
-    }
-    return cells;
-}
-
 // Logistic regression on simulated scenes; see docs/recognition.md.
 double confidence_of(const Verified& v, const Scan& scan, const MeshShape& shape) {
     if (v.support < kMinSupport || v.silhouette == 0) return 0.0;
@@ -51,7 +37,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
     const MeshShape& shape = probe.model().shape;
     const Vec3d eye = scan.ranges.viewpoint().cast<double>();
     const std::vector<std::uint32_t> window =
-        cells_around(scan.ranges, T_scene_model * shape.center, shape.radius);
+        scan.ranges.cells_around(T_scene_model * shape.center, shape.radius);
     std::vector<Vec3d> rays;
     for (const std::uint32_t cell : window) {
         rays.push_back(T_model_scene.linear() * scan.ranges.direction(cell));

@@ -65,7 +65,7 @@ RenderedView render_view(const RayScene& model, const MeshShape& shape,
 
 ModelView make_view(const RenderedView& rendered, const ViewSettings& settings, int index) {
     PointCloud cloud = resample(rendered.cloud, settings.sampling);
-    cloud.normals = estimate_normals(cloud);
+    cloud.normals = estimate_normals_within(cloud, kNormalRadius * settings.sampling);
     ModelView view;
     view.index = index;
     view.T_camera_model = rendered.T_camera_world;

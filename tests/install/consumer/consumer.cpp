@@ -16,8 +16,7 @@ int main() {
     const ostraka::RayScene scene({box});
     const std::vector<ostraka::Vec3d> down = {{0.0, 0.0, -1.0}};
     std::printf("area %.1f, diameter %.2f, %.0f mm above its top\n", ostraka::surface_area(box),
-                ostraka::measure(box).diameter,
-                scene.cast({0.1, 0.2, 8.0}, down).front().distance);
+                ostraka::measure(box).diameter, scene.cast({0.1, 0.2, 8.0}, down).front().distance);
     try {
         ostraka::load_library("no/such/file");
         return 1;
