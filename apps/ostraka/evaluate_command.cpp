@@ -15,10 +15,13 @@
 namespace ostraka::app {
 namespace {
 
-std::vector<TriangleMesh> meshes_of(const ModelLibrary& library) {
-    std::vector<TriangleMesh> meshes;
-    for (const Model& model : library.models) meshes.push_back(model.mesh);
-    return meshes;
+SceneModels models_of(const ModelLibrary& library) {
+    SceneModels models;
+    for (const Model& model : library.models) {
+        models.meshes.push_back(model.mesh);
+        models.shapes.push_back(model.shape);
+    }
+    return models;
 }
 
 struct SegmentOptions {
@@ -39,13 +42,13 @@ void run_segments(SegmentOptions& options) {
     for (const std::string& path : options.libraries) {
         const ModelLibrary library = load_library(path);
         const EntryIndex index(library);
-        const std::vector<TriangleMesh> meshes = meshes_of(library);
+        const SceneModels models = models_of(library);
         const double resolution = mesh_resolution(library.models.front().surface.points);
         for (const double noise : parse_numbers(options.noise, "--noise")) {
             SegmentSettings settings = options.settings;
             settings.views.sensor.noise = noise * resolution;
             const auto segments =
-                simulate_segments(meshes, library.settings.sampling, settings, progress_bar());
+                simulate_segments(models, library.settings.sampling, settings, progress_bar());
             double visible = 0.0;
             for (const LabeledSegment& segment : segments) visible += segment.visible_fraction;
             visible /= static_cast<double>(std::max<std::size_t>(1, segments.size()));
@@ -84,7 +87,7 @@ void run_scenes(SceneOptions& options) {
     catch_interrupts();
     const ModelLibrary library = load_library(options.library);
     const Recognizer recognizer(library);
-    const std::vector<TriangleMesh> meshes = meshes_of(library);
+    const SceneModels models = models_of(library);
     TabletopSettings settings = options.tabletop;
     settings.sensor = {.noise = options.noise, .seed = settings.seed};
     RecognitionSettings recognition_settings;
@@ -98,10 +101,10 @@ void run_scenes(SceneOptions& options) {
         std::vector<std::uint32_t> chosen;
         for (int o = 0; o < settings.objects; ++o) {
             chosen.push_back(static_cast<std::uint32_t>((i * settings.objects + o)) %
-                             static_cast<std::uint32_t>(meshes.size()));
+                             static_cast<std::uint32_t>(models.meshes.size()));
         }
         const SimulatedScene scene =
-            simulate_tabletop(meshes, chosen, static_cast<std::uint64_t>(i), settings);
+            simulate_tabletop(models, chosen, static_cast<std::uint64_t>(i), settings);
         const Stopwatch watch;
         const Recognition recognition = recognizer.recognize(scene.cloud, recognition_settings);
         seconds += watch.seconds();

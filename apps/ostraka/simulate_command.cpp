@@ -29,12 +29,12 @@ struct SimulateOptions {
     std::uint64_t seed = 0;
 };
 
-SimulatedScene make_scene(const std::vector<TriangleMesh>& meshes, std::uint64_t number,
+SimulatedScene make_scene(const SceneModels& models, std::uint64_t number,
                           const SimulateOptions& options) {
     if (options.kind == "random-views") {
         RandomViewSettings settings{.seed = options.seed};
         settings.sensor = {.noise = options.noise, .seed = options.seed};
-        return simulate_random_view(meshes, number, settings);
+        return simulate_random_view(models, number, settings);
     }
     TabletopSettings settings{
         .objects = options.objects, .spacing = options.spacing, .seed = options.seed};
@@ -42,9 +42,9 @@ SimulatedScene make_scene(const std::vector<TriangleMesh>& meshes, std::uint64_t
     Random random(options.seed ^ 0x7ab1e, number);
     std::vector<std::uint32_t> chosen;
     for (int i = 0; i < options.objects; ++i) {
-        chosen.push_back(random.below(static_cast<std::uint32_t>(meshes.size())));
+        chosen.push_back(random.below(static_cast<std::uint32_t>(models.meshes.size())));
     }
-    return simulate_tabletop(meshes, chosen, number, settings);
+    return simulate_tabletop(models, chosen, number, settings);
 }
 
 Json truth_json(const SimulatedScene& scene, const std::vector<ModelSource>& models,
@@ -66,6 +66,7 @@ void run_simulate(const SimulateOptions& options) {
         models.push_back(load_model(path));
         meshes.push_back(models.back().mesh);
     }
+    const SceneModels scene_set = scene_models(std::move(meshes));
     const Unit unit = require_unit(options.unit, "the scans are written in the models' unit");
     std::error_code problem;
     std::filesystem::create_directories(options.output, problem);
@@ -73,7 +74,7 @@ void run_simulate(const SimulateOptions& options) {
     const Progress progress = progress_bar();
     Json scenes = Json::array();
     for (int i = 0; i < options.scenes; ++i) {
-        const SimulatedScene scene = make_scene(meshes, static_cast<std::uint64_t>(i), options);
+        const SimulatedScene scene = make_scene(scene_set, static_cast<std::uint64_t>(i), options);
         const std::string stem = fmt::format("scene_{:04}", i);
         const std::string file = stem + "." + options.format;
         write_cloud(std::filesystem::path(options.output) / file, scene.cloud);

@@ -30,13 +30,13 @@ std::vector<LabeledSegment> segments_of(const SimulatedScene& scene, double samp
 
 }  // namespace
 
-std::vector<LabeledSegment> simulate_segments(std::span<const TriangleMesh> meshes, double sampling,
+std::vector<LabeledSegment> simulate_segments(const SceneModels& models, double sampling,
                                               const SegmentSettings& settings,
                                               const Progress& progress) {
     std::vector<LabeledSegment> all;
     for (int i = 0; i < settings.scenes; ++i) {
         const SimulatedScene scene =
-            simulate_random_view(meshes, static_cast<std::uint64_t>(i), settings.views);
+            simulate_random_view(models, static_cast<std::uint64_t>(i), settings.views);
         for (LabeledSegment& segment : segments_of(scene, sampling, settings)) {
             all.push_back(std::move(segment));
         }

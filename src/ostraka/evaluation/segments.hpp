@@ -22,14 +22,14 @@ struct SegmentSettings {
 
 /// A piece of a scene that shows one object.
 struct LabeledSegment {
-    std::uint32_t model = 0;  ///< index into the meshes
+    std::uint32_t model = 0;  ///< index into SceneModels
     double visible_fraction = 0.0;
     PointCloud cloud;  ///< at the sampling distance, with normals
 };
 
-/// @param meshes    in the library's unit.
+/// @param models    in the library's unit.
 /// @param sampling  the library's sampling distance.
-std::vector<LabeledSegment> simulate_segments(std::span<const TriangleMesh> meshes, double sampling,
+std::vector<LabeledSegment> simulate_segments(const SceneModels& models, double sampling,
                                               const SegmentSettings& settings,
                                               const Progress& progress = {});
 

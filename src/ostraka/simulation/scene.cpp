@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/base/random.hpp"
-#include "ostraka/mesh/shape.hpp"
 
 namespace ostraka {
 namespace {
@@ -25,32 +25,41 @@ std::size_t count_pixels(const RenderedView& view, std::uint32_t mesh) {
     return static_cast<std::size_t>(std::count(view.mesh.begin(), view.mesh.end(), mesh));
 }
 
-double mean_diameter(std::span<const TriangleMesh> meshes) {
+double mean_diameter(const SceneModels& models, std::span<const std::uint32_t> chosen) {
     double sum = 0.0;
-    for (const TriangleMesh& mesh : meshes) sum += measure(mesh).diameter;
-    return sum / static_cast<double>(meshes.size());
+    for (const std::uint32_t model : chosen) sum += models.shapes[model].diameter;
+    return sum / static_cast<double>(chosen.size());
 }
 
 // The pose of a mesh turned by R, its center above `place`, its lowest point at height 0.
-Pose stand(const TriangleMesh& mesh, const Mat3d& R_world_model, const Vec3d& place) {
+Pose stand(const TriangleMesh& mesh, const MeshShape& shape, const Mat3d& R_world_model,
+           const Vec3d& place) {
     Pose T_world_model = Pose::Identity();
     T_world_model.linear() = R_world_model;
     double lowest = std::numeric_limits<double>::max();
     for (const Vec3f& vertex : mesh.vertices) {
         lowest = std::min(lowest, (R_world_model * vertex.cast<double>()).z());
     }
-    const Vec3d center = R_world_model * measure(mesh).center;
+    const Vec3d center = R_world_model * shape.center;
     T_world_model.translation() = Vec3d(place.x() - center.x(), place.y() - center.y(), -lowest);
     return T_world_model;
 }
 
 }  // namespace
 
-SimulatedScene simulate_scene(std::span<const TriangleMesh> meshes,
-                              std::span<const PlacedModel> placed, const SceneView& view) {
+SceneModels scene_models(std::vector<TriangleMesh> meshes) {
+    SceneModels models{std::move(meshes), {}};
+    models.shapes.resize(models.meshes.size());
+    parallel_for(models.meshes.size(),
+                 [&](std::size_t i) { models.shapes[i] = measure(models.meshes[i]); });
+    return models;
+}
+
+SimulatedScene simulate_scene(const SceneModels& models, std::span<const PlacedModel> placed,
+                              const SceneView& view) {
     std::vector<TriangleMesh> world;
     for (const PlacedModel& object : placed) {
-        world.push_back(transformed(meshes[object.model], object.T_world_model));
+        world.push_back(transformed(models.meshes[object.model], object.T_world_model));
     }
     if (view.table_size > 0.0) world.push_back(square(view.table_size));
     SimulatedScene scene;
@@ -71,13 +80,10 @@ SimulatedScene simulate_scene(std::span<const TriangleMesh> meshes,
     return scene;
 }
 
-SimulatedScene simulate_tabletop(std::span<const TriangleMesh> meshes,
-                                 std::span<const std::uint32_t> chosen, std::uint64_t number,
-                                 const TabletopSettings& settings) {
+SimulatedScene simulate_tabletop(const SceneModels& models, std::span<const std::uint32_t> chosen,
+                                 std::uint64_t number, const TabletopSettings& settings) {
     Random random(settings.seed, number);
-    std::vector<TriangleMesh> used;
-    for (const std::uint32_t model : chosen) used.push_back(meshes[model]);
-    const double diameter = mean_diameter(used);
+    const double diameter = mean_diameter(models, chosen);
     std::vector<PlacedModel> placed;
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(double(chosen.size()))));
     const std::size_t rows = (chosen.size() + columns - 1) / columns;
@@ -85,7 +91,8 @@ SimulatedScene simulate_tabletop(std::span<const TriangleMesh> meshes,
         const double step = settings.spacing * diameter;
         const Vec3d place(step * (double(i % columns) - (double(columns) - 1.0) / 2.0),
                           step * (double(i / columns) - (double(rows) - 1.0) / 2.0), 0.0);
-        placed.push_back({chosen[i], stand(used[i], random.rotation(), place)});
+        const std::uint32_t m = chosen[i];
+        placed.push_back({m, stand(models.meshes[m], models.shapes[m], random.rotation(), place)});
     }
     const double azimuth = random.uniform(0.0, 2.0 * kPi);
     const double elevation = random.uniform(settings.min_elevation, settings.max_elevation);
@@ -101,25 +108,26 @@ SimulatedScene simulate_tabletop(std::span<const TriangleMesh> meshes,
         .sensor = settings.sensor,
         .table_size = 8.0 * diameter};
     view.sensor.seed = settings.sensor.seed + (number << 32U);
-    return simulate_scene(meshes, placed, view);
+    return simulate_scene(models, placed, view);
 }
 
-SimulatedScene simulate_random_view(std::span<const TriangleMesh> meshes, std::uint64_t number,
+SimulatedScene simulate_random_view(const SceneModels& models, std::uint64_t number,
                                     const RandomViewSettings& settings) {
     Random random(settings.seed, number);
-    const double diameter = mean_diameter(meshes);
+    std::vector<std::uint32_t> all(models.meshes.size());
+    std::iota(all.begin(), all.end(), 0U);
+    const double diameter = mean_diameter(models, all);
     const auto choices =
         static_cast<std::uint32_t>(settings.max_objects - settings.min_objects + 1);
     const int count = settings.min_objects + static_cast<int>(random.below(choices));
     std::vector<PlacedModel> placed;
     for (int i = 0; i < count; ++i) {
-        const std::uint32_t model = random.below(static_cast<std::uint32_t>(meshes.size()));
+        const std::uint32_t model = random.below(static_cast<std::uint32_t>(models.meshes.size()));
         Pose T_world_model = Pose::Identity();
         T_world_model.linear() = random.rotation();
         const Vec3d place =
             settings.spread * diameter * std::cbrt(random.uniform()) * random.direction();
-        T_world_model.translation() =
-            place - T_world_model.linear() * measure(meshes[model]).center;
+        T_world_model.translation() = place - T_world_model.linear() * models.shapes[model].center;
         placed.push_back({model, T_world_model});
     }
     SceneView view{
@@ -127,7 +135,7 @@ SimulatedScene simulate_random_view(std::span<const TriangleMesh> meshes, std::u
         .T_camera_world = look_at(settings.distance * diameter * random.direction(), Vec3d::Zero()),
         .sensor = settings.sensor};
     view.sensor.seed = settings.sensor.seed + (number << 32U);
-    return simulate_scene(meshes, placed, view);
+    return simulate_scene(models, placed, view);
 }
 
 }  // namespace ostraka

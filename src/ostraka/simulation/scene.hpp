@@ -5,17 +5,25 @@
 #include <span>
 #include <vector>
 
+#include "ostraka/mesh/shape.hpp"
 #include "ostraka/views/render.hpp"
 
 namespace ostraka {
 
+/// Models to make scenes of, measured once. All in one unit, which becomes the scans'.
+struct SceneModels {
+    std::vector<TriangleMesh> meshes;
+    std::vector<MeshShape> shapes;  ///< measure() of each
+};
+SceneModels scene_models(std::vector<TriangleMesh> meshes);
+
 struct PlacedModel {
-    std::uint32_t model = 0;  ///< index into the meshes given
+    std::uint32_t model = 0;  ///< index into SceneModels
     Pose T_world_model = Pose::Identity();
 };
 
 struct TrueObject {
-    std::uint32_t model = 0;                ///< index into the meshes given
+    std::uint32_t model = 0;                ///< index into SceneModels
     Pose T_scene_model = Pose::Identity();  ///< the scan's frame is the camera's
     double visible_fraction = 0.0;          ///< pixels seen / pixels if nothing were in front
 };
@@ -34,9 +42,9 @@ struct SceneView {
     double table_size = 0.0;  ///< side of a square table at world z = 0, its top; 0: none
 };
 
-/// Renders placed models. @param meshes  all in one unit, which becomes the scan's.
-SimulatedScene simulate_scene(std::span<const TriangleMesh> meshes,
-                              std::span<const PlacedModel> placed, const SceneView& view);
+/// Renders placed models.
+SimulatedScene simulate_scene(const SceneModels& models, std::span<const PlacedModel> placed,
+                              const SceneView& view);
 
 struct TabletopSettings {
     int objects = 1;       ///< stand on the table in random rotation, lowest point touching it
@@ -51,9 +59,8 @@ struct TabletopSettings {
 
 /// Objects on a table from a random viewpoint.
 /// @param chosen  indices of the models to place, one for each object.
-SimulatedScene simulate_tabletop(std::span<const TriangleMesh> meshes,
-                                 std::span<const std::uint32_t> chosen, std::uint64_t number,
-                                 const TabletopSettings& settings);
+SimulatedScene simulate_tabletop(const SceneModels& models, std::span<const std::uint32_t> chosen,
+                                 std::uint64_t number, const TabletopSettings& settings);
 
 struct RandomViewSettings {
     int min_objects = 3;
@@ -68,7 +75,7 @@ struct RandomViewSettings {
 
 /// Bologna's "random views" recipe: some models in random rotation around one place, seen from one
 /// viewpoint, hiding each other. They may interpenetrate; no table.
-SimulatedScene simulate_random_view(std::span<const TriangleMesh> meshes, std::uint64_t number,
+SimulatedScene simulate_random_view(const SceneModels& models, std::uint64_t number,
                                     const RandomViewSettings& settings);
 
 }  // namespace ostraka
