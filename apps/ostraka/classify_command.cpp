@@ -6,8 +6,6 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "ostraka/base/error.hpp"
-#include "ostraka/cloud/normals.hpp"
-#include "ostraka/cloud/resample.hpp"
 #include "ostraka/io/cloud_file.hpp"
 #include "ostraka/library/library_file.hpp"
 #include "ostraka/library/retrieval.hpp"
@@ -30,10 +28,7 @@ PointCloud load_segment(const std::string& path, const ClassifyOptions& options,
     PointCloud cloud = read_cloud_file(path).cloud;
     if (const auto viewpoint = parse_viewpoint(options.viewpoint)) cloud.viewpoint = *viewpoint;
     const Unit unit = parse_unit(options.unit).value_or(settings.unit);
-    cloud.normals.clear();
-    cloud = resample(scaled(cloud, unit_factor(unit, settings.unit)), settings.sampling);
-    cloud.normals = estimate_normals_within(cloud, kNormalRadius * settings.sampling);
-    cloud = remove_invalid(cloud);
+    cloud = prepare_segment(scaled(cloud, unit_factor(unit, settings.unit)), settings);
     if (cloud.size() < 10) {
         throw InvalidInput(
             fmt::format("{}: {} points at the library's sampling distance {:.4g} {}: "

@@ -47,8 +47,7 @@ void run_segments(SegmentOptions& options) {
         for (const double noise : parse_numbers(options.noise, "--noise")) {
             SegmentSettings settings = options.settings;
             settings.views.sensor.noise = noise * resolution;
-            const auto segments =
-                simulate_segments(models, library.settings.sampling, settings, progress_bar());
+            const auto segments = simulate_segments(models, settings, progress_bar());
             double visible = 0.0;
             for (const LabeledSegment& segment : segments) visible += segment.visible_fraction;
             visible /= static_cast<double>(std::max<std::size_t>(1, segments.size()));

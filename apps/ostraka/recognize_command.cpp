@@ -7,7 +7,9 @@
 #include "common.hpp"
 #include "ostraka/base/stopwatch.hpp"
 #include "ostraka/io/cloud_file.hpp"
+#include "ostraka/io/png_file.hpp"
 #include "ostraka/library/library_file.hpp"
+#include "ostraka/recognition/picture.hpp"
 #include "ostraka/recognition/recognize.hpp"
 
 namespace ostraka::app {
@@ -19,6 +21,8 @@ struct RecognizeOptions {
     std::string scene;
     std::string unit;
     std::string viewpoint;
+    std::string overlay;
+    std::string picture;
     RecognitionSettings settings;
 };
 
@@ -66,6 +70,18 @@ void run_recognize(const RecognizeOptions& options) {
     for (const auto& [stage, time] : result.seconds)
         times += fmt::format(" {} {:.3f}", stage, time);
     say("seconds:" + times);
+    if (result.objects.empty()) {
+        say(fmt::format("no object of the library found with confidence {:g} or more",
+                        options.settings.min_confidence));
+    }
+    if (!options.overlay.empty()) {
+        write_cloud(options.overlay, scaled(overlay_cloud(scene, library, result), factor));
+        say("overlay: " + options.overlay);
+    }
+    if (!options.picture.empty()) {
+        write_png(options.picture, draw_recognition(scene, library, result));
+        say("picture: " + options.picture);
+    }
     write_json(recognition_json(result, options.scene, unit, factor), options.common.json);
 }
 
@@ -82,6 +98,10 @@ void add_recognize(CLI::App& app) {
         ->add_option("--min-confidence", options->settings.min_confidence,
                      "objects below it are not reported")
         ->capture_default_str();
+    command->add_option("--picture", options->picture,
+                        "picture of the scan with each object tinted and labeled to write (PNG)");
+    command->add_option("--overlay", options->overlay,
+                        "the scan with the placed models in color to write (PLY)");
     add_common(*command, options->common);
     command->callback([options] { run_recognize(*options); });
 }

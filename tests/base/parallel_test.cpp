@@ -93,5 +93,37 @@ TEST_F(Parallel, LoopsNest) {
     }
 }
 
+// An inner loop that came back early would leave slots empty that its caller then reads.
+TEST_F(Parallel, AnExceptionInOneItemLeavesTheInnerLoopsOfOthersWhole) {
+    set_thread_count(2);
+    std::atomic<bool> inside = false;
+    std::atomic<bool> thrown = false;
+    std::atomic<int> visits = 0;
+    std::atomic<int> visits_on_return = -1;
+    const auto wait_for = [](const std::atomic<bool>& flag) {
+        for (int i = 0; i < 2000 && !flag; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    };
+    const auto body = [&](std::size_t i) {
+        if (i == 0) {
+            wait_for(inside);
+            thrown = true;
+            throw InvalidInput("item 0");
+        }
+        parallel_for(200, [&](std::size_t j) {
+            inside = true;
+            if (j < 2) wait_for(thrown);
+            std::this_thread::sleep_for(std::chrono::microseconds(200));
+            ++visits;
+        });
+        visits_on_return = visits.load();
+    };
+    EXPECT_THROW(parallel_for(2, body), InvalidInput);
+    if (visits_on_return >= 0) {
+        EXPECT_EQ(visits_on_return, 200);
+    }
+}
+
 }  // namespace
 }  // namespace ostraka

@@ -70,7 +70,7 @@ TEST(PclOracle, VfhEqualsPcl) {
             pcl::search::KdTree<pcl::PointXYZ>::Ptr(new pcl::search::KdTree<pcl::PointXYZ>));
         pcl::PointCloud<pcl::VFHSignature308> output;
         vfh.compute(output);
-        const auto row = describe_vfh(cloud);
+        const auto row = describe_vfh(cloud, {.pcl_viewpoint_length = true});
         EXPECT_LE(shapes::relative_l1(row, output[0].histogram), kTolerance) << cloud.size();
     }
 }

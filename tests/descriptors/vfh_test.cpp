@@ -38,11 +38,17 @@ TEST(Vfh, PlaneSeenFrontallyFillsOneBinABlock) {
     EXPECT_NEAR(row[180 + 127], 100.0, 1e-4);              // normals point at the viewpoint
 }
 
-TEST(Vfh, ViewpointBlockHasPclsUnit) {
+TEST(Vfh, ViewpointBlockCanHavePclsUnit) {
     // At distance 1 PCL divides the direction by sqrt(1 + 1): cosine 0.7071, bin (1.7071 / 2) *
     // 128.
-    const auto row = describe_vfh(square(1.0F));
+    const auto row = describe_vfh(square(1.0F), {.pcl_viewpoint_length = true});
     EXPECT_NEAR(row[180 + 109], 100.0, 1e-4);
+}
+
+TEST(Vfh, TheUnitOfLengthDoesNotMatter) {
+    const PointCloud millimeters = shapes::cut_torus(1'000);
+    const PointCloud meters = scaled(millimeters, 1.0 / 1024.0);  // exact in floating point
+    EXPECT_LT(shapes::relative_l1(describe_vfh(meters), describe_vfh(millimeters)), 2e-3);
 }
 
 TEST(Vfh, BlocksSumToTheirShareOfThePoints) {

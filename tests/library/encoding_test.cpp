@@ -14,7 +14,8 @@ TEST(Encoding, ComesBackToA64000thOfTheRadius) {
     shape.radius = 50.0;
     Random random(1);
     for (int i = 0; i < 1000; ++i) {
-        const Vec3f point = Vec3d(shape.center + 50.0 * random.uniform() * random.direction()).cast<float>();
+        const Vec3f point =
+            Vec3d(shape.center + 50.0 * random.uniform() * random.direction()).cast<float>();
         const Vec3f back = decode_point(encode_point(point, shape), shape);
         EXPECT_LT((back - point).cwiseAbs().maxCoeff(), 50.0 / 64000.0 + 2e-5);
     }
@@ -23,7 +24,8 @@ TEST(Encoding, ComesBackToA64000thOfTheRadius) {
 TEST(Encoding, DecodedPointsEncodeToThemselves) {
     MeshShape shape;
     shape.radius = 0.123;
-    for (std::int16_t value = -32000; value < 32000; value = static_cast<std::int16_t>(value + 777)) {
+    for (std::int16_t value = -32000; value < 32000;
+         value = static_cast<std::int16_t>(value + 777)) {
         const EncodedPoint code = {value, static_cast<std::int16_t>(-value), 5};
         EXPECT_EQ(encode_point(decode_point(code, shape), shape), code);
     }

@@ -92,7 +92,8 @@ TEST_F(LibraryFile, TruncatedFilesAreRefused) {
     save_library(library(), path("a.ostraka"));
     const std::string bytes = read(path("a.ostraka"));
     for (const double share : {0.0, 0.001, 0.01, 0.3, 0.7, 0.99}) {
-        write(path("cut.ostraka"), bytes.substr(0, static_cast<std::size_t>(share * double(bytes.size()))));
+        write(path("cut.ostraka"),
+              bytes.substr(0, static_cast<std::size_t>(share * double(bytes.size()))));
         EXPECT_THROW(load_library(path("cut.ostraka")), Error) << share;
     }
 }
@@ -120,8 +121,8 @@ TEST_F(LibraryFile, DamageNeverCrashes) {
 TEST_F(LibraryFile, SaysWhatIsWrong) {
     EXPECT_THROW(load_library(path("missing.ostraka")), FileError);
     EXPECT_THROW(load_library(folder_), FileError);
-    write(path("text.ostraka"), "this is no library, but a long enough text to look at" +
-                                    std::string(2000, '.'));
+    write(path("text.ostraka"),
+          "this is no library, but a long enough text to look at" + std::string(2000, '.'));
     EXPECT_THROW(load_library(path("text.ostraka")), FormatError);
     write(path("empty.ostraka"), "");
     EXPECT_THROW(load_library(path("empty.ostraka")), FormatError);

@@ -24,7 +24,8 @@ TEST(EntryIndex, AnEntrysOwnRowIsNearestToIt) {
     for (std::size_t t = 0; t < library.tables.size(); ++t) {
         const std::size_t length = descriptor_length(library.tables[t].descriptor);
         for (std::size_t i = 0; i < library.entries.size(); i += 7) {
-            const auto row = std::span<const float>(library.tables[t].rows).subspan(i * length, length);
+            const auto row =
+                std::span<const float>(library.tables[t].rows).subspan(i * length, length);
             EXPECT_EQ(index.distances(t, row)[i], 0.0F);
         }
     }
@@ -53,7 +54,8 @@ TEST(NearestEntries, AgreesWithSorting) {
 TEST(RankModels, VotesDecideThenTheNearestEntry) {
     ModelLibrary library;
     library.models.resize(3);
-    for (const std::uint32_t model : {0U, 0U, 1U, 1U, 2U}) library.entries.push_back({.model = model});
+    for (const std::uint32_t model : {0U, 0U, 1U, 1U, 2U})
+        library.entries.push_back({.model = model});
     const std::vector<float> distances = {0.2F, 0.9F, 0.3F, 0.4F, 0.8F};
     const auto k1 = rank_models(library, distances, 1);
     EXPECT_EQ(k1[0].model, 0U);

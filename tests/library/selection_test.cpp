@@ -31,7 +31,8 @@ double objective(std::span<const ElementSet> candidates, const std::vector<std::
     double sum = 0.0;
     for (const ElementSet& observation : candidates) {
         double best = 0.0;
-        for (const std::uint32_t c : chosen) best = std::max(best, overlap(candidates[c], observation));
+        for (const std::uint32_t c : chosen)
+            best = std::max(best, overlap(candidates[c], observation));
         sum += best;
     }
     return sum;
@@ -59,7 +60,7 @@ std::vector<std::uint32_t> greedy(std::span<const ElementSet> candidates, std::s
 }
 
 TEST(Overlap, IsIntersectionOverUnion) {
-    EXPECT_DOUBLE_EQ(overlap(range_set(0, 100), range_set(50, 150)), double(50.0F / 150.0F));
+    EXPECT_DOUBLE_EQ(overlap(range_set(0, 100), range_set(50, 150)), 50.0 / 150.0);
     EXPECT_DOUBLE_EQ(overlap(range_set(0, 100), range_set(0, 100)), 1.0);
     EXPECT_DOUBLE_EQ(overlap(range_set(0, 100), range_set(500, 600)), 0.0);
     EXPECT_DOUBLE_EQ(overlap(ElementSet{}, ElementSet{}), 0.0);

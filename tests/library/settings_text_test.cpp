@@ -40,7 +40,7 @@ TEST(SettingsText, EverySettingIsNeeded) {
         without.erase(key);
         EXPECT_THROW(settings_from_text(without), InvalidInput) << key;
         SettingTexts broken = texts;
-        broken[key] = "?";
+        broken[key] = std::string(1, '?');
         EXPECT_THROW(settings_from_text(broken), InvalidInput) << key;
     }
 }

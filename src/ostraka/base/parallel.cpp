@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <memory>
 #include <mutex>
@@ -27,10 +28,15 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
     // Isolated: a thread that waits here for an inner loop doesn't start another item of an outer
     // one, which would pile up memory and break thread-local scratch space.
     tbb::this_task_arena::isolate([&] {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-                          });
+        // A context of its own: an exception in an outer loop would otherwise cancel this one, which
+        // would return as if it were done, with items left out.
+        tbb::task_group_context context(tbb::task_group_context::isolated);
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, count, grain),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+                for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+            },
+            context);
     });
 }
 

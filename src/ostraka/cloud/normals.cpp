@@ -14,6 +14,7 @@ namespace {
 
 // Below this ratio of the two larger deviations' variances the points lie on a line.
 constexpr double kLineRatio = 1e-10;
+constexpr double kLineRatioSingle = 1e-6;  // where the sums are in single precision
 constexpr double kUnsureRatio = 1e-6;
 
 const Vec3f kNone = Vec3f::Constant(std::numeric_limits<float>::quiet_NaN());
@@ -25,7 +26,7 @@ struct Moments {
     double count = 0.0;
 };
 
-Vec3f fit_normal(const Moments& moments) {
+Vec3f fit_normal(const Moments& moments, double line_ratio) {
     if (moments.count < 3.0) return kNone;
     const Vec3d mean = moments.first / moments.count;
     const Mat3d scatter = moments.second / moments.count - mean * mean.transpose();
@@ -34,7 +35,7 @@ Vec3f fit_normal(const Moments& moments) {
     // The closed form loses half of the digits where two values are nearly equal, as on a line.
     if (solver.eigenvalues()[1] < kUnsureRatio * solver.eigenvalues()[2]) solver.compute(scatter);
     const Eigen::Vector3d values = solver.eigenvalues();
-    if (!(values[2] > 0.0) || values[1] < kLineRatio * values[2]) return kNone;
+    if (!(values[2] > 0.0) || values[1] < line_ratio * values[2]) return kNone;
     return Vec3d(solver.eigenvectors().col(0)).normalized().cast<float>();
 }
 
@@ -48,7 +49,7 @@ Vec3f fit_normal(std::span<const Vec3f> points, std::span<const Neighbor> neighb
         moments.second += offset * offset.transpose();
     }
     moments.count = static_cast<double>(neighbors.size());
-    return fit_normal(moments);
+    return fit_normal(moments, kLineRatio);
 }
 
 // Offsets are short and many: single precision sums of ten products each lose nothing that matters.
@@ -70,7 +71,7 @@ Vec3f fit_normal_within(const Vec3f& query, std::span<const Vec3f> candidates,
     moments.second << double{sums[3]}, double{sums[4]}, double{sums[5]}, double{sums[4]},
         double{sums[6]}, double{sums[7]}, double{sums[5]}, double{sums[7]}, double{sums[8]};
     moments.count = double{count};
-    return fit_normal(moments);
+    return fit_normal(moments, kLineRatioSingle);
 }
 
 Vec3f toward(const Vec3f& normal, const Vec3f& from, const Vec3f& viewpoint) {

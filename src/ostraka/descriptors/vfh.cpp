@@ -21,7 +21,7 @@ constexpr std::size_t kBlock = 256;  // points handled at a time: their columns 
 struct Center {
     float px, py, pz;  // centroid
     float nx, ny, nz;  // mean normal, not unit
-    float vx, vy, vz;  // toward the viewpoint, PCL's length
+    float vx, vy, vz;  // toward the viewpoint
 };
 
 // Columns of a block of points; bins come out as -1 where undefined.
@@ -86,7 +86,7 @@ void bin_block(const Center& center, Columns& c, std::size_t count) {
     }
 }
 
-Center center_of(const PointCloud& cloud) {
+Center center_of(const PointCloud& cloud, const VfhSettings& settings) {
     const Vec3d middle = exact_centroid(cloud.points);
     const TermRounder rounded(cloud.size(), 1.0);
     Vec3d normal = Vec3d::Zero();
@@ -99,7 +99,9 @@ Center center_of(const PointCloud& cloud) {
     if (count > 0) normal /= static_cast<double>(count);
     const Vec3d away = cloud.viewpoint.cast<double>() - middle;
     // PCL's difference of homogeneous vectors has a fourth component of -1.
-    const Vec3d view = away / std::sqrt(away.squaredNorm() + 1.0);
+    const double length =
+        std::sqrt(away.squaredNorm() + (settings.pcl_viewpoint_length ? 1.0 : 0.0));
+    const Vec3d view = length > 0.0 ? Vec3d(away / length) : Vec3d::Zero();
     const Vec3f p = middle.cast<float>();
     const Vec3f n = normal.cast<float>();
     const Vec3f v = view.cast<float>();
@@ -121,10 +123,10 @@ void load(const PointCloud& cloud, std::size_t first, std::size_t count, Columns
 
 }  // namespace
 
-std::vector<float> describe_vfh(const PointCloud& cloud, const VfhSettings& /*settings*/) {
+std::vector<float> describe_vfh(const PointCloud& cloud, const VfhSettings& settings) {
     require_points(cloud, "vfh");
     require_normals(cloud, "vfh");
-    const Center center = center_of(cloud);
+    const Center center = center_of(cloud, settings);
     // One more bin at the front of each block takes what is undefined (-1).
     std::array<std::uint32_t, kAngleBins + 1> angle{};
     std::array<std::uint32_t, kAngleBins + 1> cosine{};

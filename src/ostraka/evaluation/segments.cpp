@@ -2,13 +2,13 @@
 #include "ostraka/evaluation/segments.hpp"
 
 #include "ostraka/base/parallel.hpp"
-#include "ostraka/cloud/normals.hpp"
-#include "ostraka/cloud/resample.hpp"
 
 namespace ostraka {
 namespace {
 
-std::vector<LabeledSegment> segments_of(const SimulatedScene& scene, double sampling,
+constexpr std::size_t kMinPoints = 10;  // a segment with fewer counts as not recognized
+
+std::vector<LabeledSegment> segments_of(const SimulatedScene& scene,
                                         const SegmentSettings& settings) {
     std::vector<LabeledSegment> segments;
     for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
@@ -19,25 +19,21 @@ std::vector<LabeledSegment> segments_of(const SimulatedScene& scene, double samp
         for (std::uint32_t i = 0; i < scene.labels.size(); ++i) {
             if (scene.labels[i] == object) pixels.push_back(i);
         }
-        LabeledSegment segment{truth.model, truth.visible_fraction, {}};
-        segment.cloud = resample(select(scene.cloud, pixels), sampling);
-        segment.cloud.normals = estimate_normals_within(segment.cloud, kNormalRadius * sampling);
-        segment.cloud = remove_invalid(segment.cloud);
-        if (segment.cloud.size() >= settings.min_points) segments.push_back(std::move(segment));
+        segments.push_back({truth.model, truth.visible_fraction, select(scene.cloud, pixels)});
     }
     return segments;
 }
 
 }  // namespace
 
-std::vector<LabeledSegment> simulate_segments(const SceneModels& models, double sampling,
+std::vector<LabeledSegment> simulate_segments(const SceneModels& models,
                                               const SegmentSettings& settings,
                                               const Progress& progress) {
     std::vector<LabeledSegment> all;
     for (int i = 0; i < settings.scenes; ++i) {
         const SimulatedScene scene =
             simulate_random_view(models, static_cast<std::uint64_t>(i), settings.views);
-        for (LabeledSegment& segment : segments_of(scene, sampling, settings)) {
+        for (LabeledSegment& segment : segments_of(scene, settings)) {
             all.push_back(std::move(segment));
         }
         report(progress, "scenes", static_cast<std::size_t>(i + 1),
@@ -53,11 +49,16 @@ std::map<std::string, double> recognition_rates(const EntryIndex& index,
     for (const DescriptorTable& table : index.library().tables) {
         names.emplace_back(descriptor_name(table.descriptor));
     }
+    std::vector<PointCloud> prepared(segments.size());
+    parallel_for(segments.size(), [&](std::size_t s) {
+        prepared[s] = prepare_segment(segments[s].cloud, index.library().settings);
+    });
     std::map<std::string, double> rates;
     for (const std::string& name : names) {
         std::vector<int> right(segments.size(), 0);
         parallel_for(segments.size(), [&](std::size_t s) {
-            const auto ranking = classify(index, segments[s].cloud, name, k);
+            if (prepared[s].size() < kMinPoints) return;
+            const auto ranking = classify(index, prepared[s], name, k);
             right[s] = !ranking.empty() && ranking.front().model == segments[s].model ? 1 : 0;
         });
         double sum = 0.0;

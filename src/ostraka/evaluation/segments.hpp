@@ -13,11 +13,10 @@
 namespace ostraka {
 
 struct SegmentSettings {
-    int scenes = 60;              ///< random-view scenes
-    double min_visible = 0.10;    ///< least visible fraction of a segment
-    double max_visible = 0.85;    ///< greatest; 0.85 to 1 are "light" occlusions
-    std::size_t min_points = 60;  ///< at the library's density; smaller segments are left out
-    RandomViewSettings views;     ///< noise, seed, density of the scenes
+    int scenes = 60;            ///< random-view scenes
+    double min_visible = 0.10;  ///< least visible fraction of a segment
+    double max_visible = 0.85;  ///< greatest; 0.85 to 1 are "light" occlusions
+    RandomViewSettings views;   ///< noise, seed, density of the scenes
 };
 
 /// A piece of a scene that shows one object.
@@ -27,9 +26,8 @@ struct LabeledSegment {
     PointCloud cloud;  ///< at the sampling distance, with normals
 };
 
-/// @param models    in the library's unit.
-/// @param sampling  the library's sampling distance.
-std::vector<LabeledSegment> simulate_segments(const SceneModels& models, double sampling,
+/// The visible points of each object of simulated scenes.
+std::vector<LabeledSegment> simulate_segments(const SceneModels& models,
                                               const SegmentSettings& settings,
                                               const Progress& progress = {});
 

@@ -10,6 +10,9 @@
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/base/parallel.hpp"
+#include "ostraka/cloud/clusters.hpp"
+#include "ostraka/cloud/normals.hpp"
+#include "ostraka/cloud/resample.hpp"
 
 namespace ostraka {
 namespace {
@@ -144,6 +147,19 @@ std::vector<RankedModel> rank_models(const ModelLibrary& library, std::span<cons
         return a.votes != b.votes ? a.votes > b.votes : nearer(a.best, b.best);
     });
     return ranking;
+}
+
+PointCloud prepare_segment(const PointCloud& segment, const LibrarySettings& settings) {
+    PointCloud cloud = segment;
+    cloud.normals.clear();
+    cloud = resample(cloud, settings.sampling);
+    if (cloud.empty()) return cloud;
+    if (!settings.full_views_only) {
+        const Clusters clusters = euclidean_clusters(cloud.points, settings.cuts.cluster_tolerance);
+        cloud = select(cloud, clusters.front());
+    }
+    cloud.normals = estimate_normals_within(cloud, kNormalRadius * settings.sampling);
+    return remove_invalid(cloud);
 }
 
 std::vector<RankedModel> classify(const EntryIndex& index, const PointCloud& segment,

@@ -53,6 +53,12 @@ std::vector<EntryMatch> nearest_entries(std::span<const float> distances, std::s
 std::vector<RankedModel> rank_models(const ModelLibrary& library, std::span<const float> distances,
                                      std::size_t k);
 
+/// Makes a segment comparable with the entries: at their sampling distance, with normals; and,
+/// unless the library holds whole views only, reduced to its largest cluster, as the subparts were.
+/// @param segment  in the library's unit; may hold NaN points; viewpoint set.
+/// @return fewer than 3 points if nothing usable is left.
+PointCloud prepare_segment(const PointCloud& segment, const LibrarySettings& settings);
+
 /// Ranks the models for a segment. @param segment  with normals, at the library's sampling
 /// distance.
 /// @param descriptor  a name in the library, or "fused".

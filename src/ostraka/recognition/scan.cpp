@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ostraka/base/error.hpp"
@@ -16,14 +17,24 @@ constexpr std::size_t kMinPoints = 10;
 constexpr double kMaxModelsAcross = 500.0;  // a scan wider than so many models has another unit
 constexpr double kMinModelsAcross = 0.02;   // as has one narrower than this
 
+const Vec3f& farthest_from(const Vec3f& place, const PointCloud& cloud) {
+    const auto nearer = [&](const Vec3f& a, const Vec3f& b) {
+        return (a - place).squaredNorm() < (b - place).squaredNorm();
+    };
+    return *std::max_element(cloud.points.begin(), cloud.points.end(), nearer);
+}
+
+// The distance of two points that are about the farthest from each other: never more than the
+// diameter, hardly less, and the same however the scan is turned.
 double extent_of(const PointCloud& cloud) {
-    Vec3f low = cloud.points.front();
-    Vec3f high = low;
-    for (const Vec3f& point : cloud.points) {
-        low = low.cwiseMin(point);
-        high = high.cwiseMax(point);
+    Vec3f a = farthest_from(centroid(cloud.points).cast<float>(), cloud);
+    double extent = 0.0;
+    for (int sweep = 0; sweep < 3; ++sweep) {
+        const Vec3f b = farthest_from(a, cloud);
+        extent = std::max(extent, (b - a).cast<double>().norm());
+        a = b;
     }
-    return (high - low).cast<double>().norm();
+    return extent;
 }
 
 void check_size(const PointCloud& valid, std::size_t given, double model_diameter) {

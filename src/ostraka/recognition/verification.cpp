@@ -11,6 +11,11 @@ constexpr double kMinAgreement = 0.7;  // cosine between the normals of model an
 constexpr double kMinSlope = 0.3;      // cosine of incidence below which tolerance grows no further
 constexpr double kMaxShared = 0.35;    // of a hypothesis' support that better ones may have claimed
 constexpr std::size_t kMinSupport = 40;  // cells; fewer say nothing
+constexpr int kInward = 2;               // cells from the outline into the model, past the rim,
+constexpr int kOutward = 3;              // and out of it, where normals are those of one side only
+constexpr float kContinues = 0.94F;      // cosine between normals on both sides of a smooth surface
+constexpr std::size_t kMinOutline = 12;  // cells of outline; fewer say nothing
+constexpr double kMaxOpen = 0.3;         // open share of the outline that true objects reach
 
 // Logistic regression on simulated scenes; see docs/recognition.md.
 double confidence_of(const Verified& v, const Scan& scan, const MeshShape& shape) {
@@ -22,8 +27,79 @@ double confidence_of(const Verified& v, const Scan& scan, const MeshShape& shape
     const double cell_area = scan.sampling * scan.sampling;
     const double area = support * cell_area / (shape.diameter * shape.diameter);
     const double logit = 22.0 * (agreement - 0.80) + 14.0 * std::min(v.visible_fraction, 0.5) +
-                         10.0 * std::min(area, 0.12) - 3.2 - 20.0 * v.sunk;
+                         10.0 * std::min(area, 0.12) - 3.2 - 20.0 * v.sunk -
+                         20.0 * std::max(0.0, v.open - kMaxOpen);
     return 1.0 / (1.0 + std::exp(-logit));
+}
+
+// The cells of a window of the range map that a placed model covers.
+class Silhouette {
+  public:
+    Silhouette(const RangeMap& ranges, const std::vector<std::uint32_t>& window,
+               const std::vector<RayHit>& hits)
+        : width_(static_cast<int>(ranges.width())), height_(static_cast<int>(ranges.height())) {
+        if (window.empty()) return;
+        low_u_ = static_cast<int>(window.front()) % width_;
+        low_v_ = static_cast<int>(window.front()) / width_;
+        columns_ = static_cast<int>(window.back()) % width_ - low_u_ + 1;
+        for (const RayHit& hit : hits) covered_.push_back(hit.hit());
+    }
+    bool covers(int u, int v) const {
+        const int column = u - low_u_;
+        const int row = v - low_v_;
+        if (column < 0 || row < 0 || column >= columns_) return false;
+        const auto i = static_cast<std::size_t>(row * columns_ + column);
+        return i < covered_.size() && covered_[i];
+    }
+    std::uint32_t cell(int u, int v) const {
+        if (u < 0 || v < 0 || u >= width_ || v >= height_) return kNoIndex;
+        return static_cast<std::uint32_t>(v * width_ + u);
+    }
+    int u(std::uint32_t cell) const { return static_cast<int>(cell) % width_; }
+    int v(std::uint32_t cell) const { return static_cast<int>(cell) / width_; }
+
+  private:
+    int width_;
+    int height_;
+    int low_u_ = 0;
+    int low_v_ = 0;
+    int columns_ = 0;
+    std::vector<bool> covered_;
+};
+
+// Whether two measured cells show one smooth surface.
+bool continues(const Scan& scan, std::uint32_t inside, std::uint32_t outside) {
+    if (inside == kNoIndex || outside == kNoIndex) return false;
+    const std::uint32_t a = scan.ranges[inside].point;
+    const std::uint32_t b = scan.ranges[outside].point;
+    if (a == kNoIndex || b == kNoIndex || !scan.ranges[outside].measured()) return false;
+    const Vec3f& normal = scan.cloud.normals[a];
+    if (normal.dot(scan.cloud.normals[b]) < kContinues) return false;
+    const float off = normal.dot(scan.cloud.points[b] - scan.cloud.points[a]);
+    return std::abs(off) < static_cast<float>(scan.sampling);
+}
+
+// Clutter in the sense of Aldoma et al.: surface that belongs to what the model explains but lies
+// beyond the model. A flat face fits into any wall; the wall goes on where the model ends.
+double open_share(const Scan& scan, const Silhouette& silhouette,
+                  const std::vector<std::uint32_t>& supported) {
+    std::size_t outline = 0;
+    std::size_t open = 0;
+    for (const std::uint32_t cell : supported) {
+        const int u = silhouette.u(cell);
+        const int v = silhouette.v(cell);
+        for (const auto& [du, dv] :
+             {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
+            if (silhouette.covers(u + du, v + dv)) continue;
+            if (silhouette.covers(u + kOutward * du, v + kOutward * dv)) continue;
+            const std::uint32_t inside = silhouette.cell(u - kInward * du, v - kInward * dv);
+            if (!std::binary_search(supported.begin(), supported.end(), inside)) continue;
+            ++outline;
+            const std::uint32_t outside = silhouette.cell(u + kOutward * du, v + kOutward * dv);
+            if (continues(scan, inside, outside)) ++open;
+        }
+    }
+    return outline < kMinOutline ? 0.0 : static_cast<double>(open) / static_cast<double>(outline);
 }
 
 }  // namespace
@@ -91,6 +167,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
             static_cast<double>(result.support) / static_cast<double>(result.silhouette);
         result.sunk = static_cast<double>(sunk) / static_cast<double>(result.silhouette);
     }
+    result.open = open_share(scan, Silhouette(scan.ranges, window, hits), result.cells);
     result.confidence = confidence_of(result, scan, shape);
     return result;
 }

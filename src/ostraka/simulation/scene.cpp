@@ -120,20 +120,26 @@ SimulatedScene simulate_random_view(const SceneModels& models, std::uint64_t num
     const auto choices =
         static_cast<std::uint32_t>(settings.max_objects - settings.min_objects + 1);
     const int count = settings.min_objects + static_cast<int>(random.below(choices));
+    // Along the line of sight (z) each ball begins where the one before it ends.
     std::vector<PlacedModel> placed;
+    double depth = 0.0;
     for (int i = 0; i < count; ++i) {
         const std::uint32_t model = random.below(static_cast<std::uint32_t>(models.meshes.size()));
+        const MeshShape& shape = models.shapes[model];
+        const double angle = random.uniform(0.0, 2.0 * kPi);
+        const double aside = settings.spread * diameter * std::sqrt(random.uniform());
+        const Vec3d place(aside * std::cos(angle), aside * std::sin(angle), depth + shape.radius);
         Pose T_world_model = Pose::Identity();
         T_world_model.linear() = random.rotation();
-        const Vec3d place =
-            settings.spread * diameter * std::cbrt(random.uniform()) * random.direction();
-        T_world_model.translation() = place - T_world_model.linear() * models.shapes[model].center;
+        T_world_model.translation() = place - T_world_model.linear() * shape.center;
         placed.push_back({model, T_world_model});
+        depth += 2.0 * shape.radius;
     }
-    SceneView view{
-        .camera = settings.camera,
-        .T_camera_world = look_at(settings.distance * diameter * random.direction(), Vec3d::Zero()),
-        .sensor = settings.sensor};
+    const Vec3d middle(0.0, 0.0, depth / 2.0);
+    const Vec3d eye = middle - Vec3d(0.0, 0.0, settings.distance * diameter);
+    SceneView view{.camera = settings.camera,
+                   .T_camera_world = look_at(eye, middle, Vec3d::UnitY()),
+                   .sensor = settings.sensor};
     view.sensor.seed = settings.sensor.seed + (number << 32U);
     return simulate_scene(models, placed, view);
 }

@@ -65,16 +65,16 @@ SimulatedScene simulate_tabletop(const SceneModels& models, std::span<const std:
 struct RandomViewSettings {
     int min_objects = 3;
     int max_objects = 5;
-    double spread =
-        0.45;  ///< how far objects lie from the middle, in mean diameters; less is denser
-    double distance = 4.0;  ///< from sensor to the middle, in mean diameters
-    PinholeCamera camera;
+    double spread = 0.35;   ///< how far objects lie beside the line of sight, in mean diameters
+    double distance = 5.0;  ///< from sensor to the middle, in mean diameters
+    PinholeCamera camera{1280, 960, 1600.0, 1600.0, 639.5, 479.5};
     SensorSettings sensor;
     std::uint64_t seed = 0;  ///< scene number i uses (seed, i)
 };
 
-/// Bologna's "random views" recipe: some models in random rotation around one place, seen from one
-/// viewpoint, hiding each other. They may interpenetrate; no table.
+/// Bologna's "random views" recipe: some models in random rotation, seen from one viewpoint, hiding
+/// each other. They stand one behind the other with their enclosing balls apart, so that none is
+/// inside another; no table.
 SimulatedScene simulate_random_view(const SceneModels& models, std::uint64_t number,
                                     const RandomViewSettings& settings);
 

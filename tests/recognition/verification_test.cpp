@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/recognition/verification.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "recognition/recognition_testing.hpp"
+
+namespace ostraka {
+namespace {
+
+using namespace recognition_testing;
+
+Verified verify_at(const Scan& scan, std::uint32_t model, const Pose& T_scene_model) {
+    return verify(scan, probe(model), {.model = model, .T_scene_model = T_scene_model},
+                  tolerance());
+}
+
+TEST(Verify, TheTruthIsConfidentAndAsVisibleAsItIs) {
+    for (std::uint64_t number = 0; number < 4; ++number) {
+        const SimulatedScene scene = tabletop({kCorner, kPlate}, number);
+        const Scan scan = prepared(scene);
+        for (const TrueObject& object : scene.objects) {
+            const Verified v = verify_at(scan, object.model, object.T_scene_model);
+            EXPECT_EQ(v.silhouette, v.support + v.hidden + v.violation + v.missing);
+            EXPECT_EQ(v.cells.size(), v.support);
+            EXPECT_TRUE(std::is_sorted(v.cells.begin(), v.cells.end()));
+            EXPECT_GT(v.confidence, 0.9);
+            EXPECT_NEAR(v.visible_fraction, object.visible_fraction, 0.15);
+            EXPECT_LT(v.inlier_rms, 0.3 * library().settings.sampling);
+            EXPECT_LT(v.sunk, 0.01);
+            EXPECT_LT(v.open, 0.2);
+        }
+    }
+}
+
+TEST(Verify, TheSilhouetteIsTheModelsOutline) {
+    // Cells are about half a sampling distance wide at the scan's median distance... in area, the
+    // silhouette of the truth is what the sensor labeled.
+    const SimulatedScene scene = alone(kPlate, 2);
+    const Scan scan = prepared(scene);
+    const Verified v = verify_at(scan, kPlate, scene.objects[0].T_scene_model);
+    std::size_t directions = 0;
+    std::size_t on_object = 0;
+    for (std::size_t i = 0; i < scene.labels.size(); ++i) {
+        if (scene.labels[i] != 0) continue;
+        ++on_object;
+        const std::uint32_t cell = scan.ranges.cell_of(scene.cloud.points[i]);
+        if (std::binary_search(v.cells.begin(), v.cells.end(), cell)) ++directions;
+    }
+    EXPECT_GT(directions, on_object * 9 / 10);
+}
+
+TEST(Verify, AnotherModelOrPlaceIsNotBelieved) {
+    const SimulatedScene scene = tabletop({kCorner, kPlate}, 1);
+    const Scan scan = prepared(scene);
+    for (const TrueObject& object : scene.objects) {
+        const std::uint32_t other = 1 - object.model;
+        EXPECT_LT(verify_at(scan, other, object.T_scene_model).confidence, 0.5);
+        Pose nearer = object.T_scene_model;
+        nearer.translation() *= 0.8;
+        const Verified floating = verify_at(scan, object.model, nearer);
+        EXPECT_LT(floating.confidence, 0.1);
+        EXPECT_GT(floating.violation, floating.silhouette * 8 / 10);
+        Pose below = object.T_scene_model;
+        below.translation() -= 200.0 * scan.table->normal;
+        const Verified sunk = verify_at(scan, object.model, below);
+        EXPECT_LT(sunk.confidence, 0.1);
+        EXPECT_GT(sunk.sunk, 0.9);
+    }
+}
+
+TEST(Verify, OutOfSightThereIsNoSilhouette) {
+    const SimulatedScene scene = alone(kCorner, 0);
+    Pose behind = scene.objects[0].T_scene_model;
+    behind.translation() = -behind.translation();
+    const Verified v = verify_at(prepared(scene), kCorner, behind);
+    EXPECT_EQ(v.support, 0U);
+    EXPECT_EQ(v.confidence, 0.0);
+    EXPECT_EQ(v.visible_fraction, 0.0);
+    EXPECT_EQ(v.inlier_rms, 0.0);
+}
+
+TEST(Verify, WhatIsHiddenIsNoContradiction) {
+    // The corner model far behind the table: hidden, and nothing else.
+    const SimulatedScene scene = tabletop({kPlate}, 0);
+    Pose behind = scene.objects[0].T_scene_model;
+    behind.translation() *= 2.0;
+    const Verified v = verify_at(prepared(scene), kCorner, behind);
+    EXPECT_EQ(v.violation, 0U);
+    EXPECT_GT(v.hidden, v.silhouette * 9 / 10);
+    EXPECT_LT(v.confidence, 0.1);
+}
+
+// A candidate that explains the cells from `first` to `last`.
+Verified candidate(double confidence, std::uint32_t first, std::uint32_t last) {
+    Verified v;
+    v.confidence = confidence;
+    v.cells.resize(last - first);
+    std::iota(v.cells.begin(), v.cells.end(), first);
+    v.support = v.cells.size();
+    return v;
+}
+
+std::vector<double> confidences(const std::vector<Verified>& chosen) {
+    std::vector<double> values;
+    for (const Verified& v : chosen) values.push_back(v.confidence);
+    return values;
+}
+
+TEST(Choose, KeepsTheBestOfThoseThatExplainTheSame) {
+    const auto chosen = choose({candidate(0.7, 0, 100), candidate(0.9, 10, 110),
+                                candidate(0.8, 500, 600), candidate(0.6, 520, 640)},
+                               0.5);
+    EXPECT_EQ(confidences(chosen), (std::vector<double>{0.9, 0.8}));
+}
+
+TEST(Choose, ToleratesALittleOverlap) {
+    const auto chosen = choose({candidate(0.9, 0, 100), candidate(0.8, 80, 180)}, 0.5);
+    EXPECT_EQ(chosen.size(), 2U);
+}
+
+TEST(Choose, OverlapsAddUp) {
+    const auto chosen = choose({candidate(0.9, 0, 100), candidate(0.8, 200, 300),
+                                candidate(0.7, 80, 220)},  // 20 and 20 of 140
+                               0.5);
+    EXPECT_EQ(chosen.size(), 3U);
+    const auto fewer = choose({candidate(0.9, 0, 100), candidate(0.8, 200, 300),
+                               candidate(0.7, 60, 240)},  // 40 and 40 of 180
+                              0.5);
+    EXPECT_EQ(fewer.size(), 2U);
+}
+
+TEST(Choose, LeavesOutWhatIsBelowTheThreshold) {
+    EXPECT_TRUE(choose({candidate(0.49, 0, 100)}, 0.5).empty());
+    EXPECT_EQ(choose({candidate(0.5, 0, 100)}, 0.5).size(), 1U);
+    EXPECT_TRUE(choose({}, 0.5).empty());
+}
+
+}  // namespace
+}  // namespace ostraka
