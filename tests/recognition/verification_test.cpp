@@ -26,7 +26,7 @@ TEST(Verify, TheTruthIsConfidentAndAsVisibleAsItIs) {
             EXPECT_EQ(v.cells.size(), v.support);
             EXPECT_TRUE(std::is_sorted(v.cells.begin(), v.cells.end()));
             EXPECT_GT(v.confidence, 0.9);
-            EXPECT_NEAR(v.visible_fraction, object.visible_fraction, 0.15);
+            EXPECT_NEAR(v.visible_fraction, object.visible_fraction, 0.25);
             EXPECT_LT(v.inlier_rms, 0.3 * library().settings.sampling);
             EXPECT_LT(v.sunk, 0.01);
             EXPECT_LT(v.open, 0.2);
@@ -34,21 +34,20 @@ TEST(Verify, TheTruthIsConfidentAndAsVisibleAsItIs) {
     }
 }
 
-TEST(Verify, TheSilhouetteIsTheModelsOutline) {
-    // Cells are about half a sampling distance wide at the scan's median distance... in area, the
-    // silhouette of the truth is what the sensor labeled.
+TEST(Verify, SupportIsWhatTheSensorSawOfTheObject) {
+    // What the sensor saw of the object is what supports its true pose.
     const SimulatedScene scene = alone(kPlate, 2);
     const Scan scan = prepared(scene);
     const Verified v = verify_at(scan, kPlate, scene.objects[0].T_scene_model);
-    std::size_t directions = 0;
+    std::size_t supported = 0;
     std::size_t on_object = 0;
     for (std::size_t i = 0; i < scene.labels.size(); ++i) {
         if (scene.labels[i] != 0) continue;
         ++on_object;
         const std::uint32_t cell = scan.ranges.cell_of(scene.cloud.points[i]);
-        if (std::binary_search(v.cells.begin(), v.cells.end(), cell)) ++directions;
+        if (std::binary_search(v.cells.begin(), v.cells.end(), cell)) ++supported;
     }
-    EXPECT_GT(directions, on_object * 9 / 10);
+    EXPECT_GT(supported, on_object * 3 / 4);
 }
 
 TEST(Verify, AnotherModelOrPlaceIsNotBelieved) {
@@ -90,6 +89,27 @@ TEST(Verify, WhatIsHiddenIsNoContradiction) {
     EXPECT_EQ(v.violation, 0U);
     EXPECT_GT(v.hidden, v.silhouette * 9 / 10);
     EXPECT_LT(v.confidence, 0.1);
+}
+
+TEST(Verify, AFaceLaidIntoAWallIsNotBelieved) {
+    TriangleMesh mesh;
+    testing::add_box(mesh, Vec3f(-300, -300, -20), Vec3f(300, 300, 0));
+    const SceneModels walls = scene_models({mesh});
+    const PlacedModel placed{0, Pose::Identity()};
+    for (const double noise : {0.0, 0.5}) {
+        SceneView view{.T_camera_world = look_at(Vec3d(100, -150, 380), Vec3d::Zero())};
+        view.sensor.noise = noise;
+        const SimulatedScene scene = simulate_scene(walls, {&placed, 1}, view);
+        // No table is looked for: a wall may be too small for one.
+        const Scan scan = prepare_scan(scene.cloud, library().settings.sampling, 1000.0, {});
+        ASSERT_FALSE(scan.table);
+        Pose T_wall_plate = Pose::Identity();  // its flat underside is the wall's surface
+        T_wall_plate.linear() = Vec3d(1.0, -1.0, -1.0).asDiagonal();
+        const Verified v = verify_at(scan, kPlate, scene.objects[0].T_scene_model * T_wall_plate);
+        EXPECT_GT(v.visible_fraction, 0.8);
+        EXPECT_GT(v.open, 0.8);
+        EXPECT_LT(v.confidence, 0.1);
+    }
 }
 
 // A candidate that explains the cells from `first` to `last`.

@@ -48,6 +48,7 @@ struct Recognizer::Implementation {
     explicit Implementation(const ModelLibrary& given)
         : library(given), index(given), probes(make_probes(given)) {
         if (given.models.empty()) throw InvalidInput("the library has no models");
+        for (const Model& model : given.models) rows.push_back(widen(model.keypoints.rows));
     }
 
     // Hypotheses of every source, by model.
@@ -62,7 +63,7 @@ struct Recognizer::Implementation {
             result.seconds["segments"] = watch.lap();
         }
         if (settings.use_keypoints) {
-            const auto matches = match_keypoints(scan, library, settings);
+            const auto matches = match_keypoints(scan, library, rows, settings);
             for (std::uint32_t m = 0; m < matches.size(); ++m) {
                 for (const Pose& pose : poses_from_matches(matches[m], 2.0 * scan.sampling)) {
                     by_model[m].push_back(
@@ -77,6 +78,7 @@ struct Recognizer::Implementation {
     const ModelLibrary& library;
     EntryIndex index;
     std::vector<ModelProbe> probes;
+    std::vector<WideRows> rows;  // of each model's keypoints
 };
 
 Recognizer::Recognizer(const ModelLibrary& library)

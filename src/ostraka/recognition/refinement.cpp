@@ -14,7 +14,9 @@ constexpr std::size_t kCoarsePoints = 300;
 constexpr std::size_t kFinePoints = 2000;
 constexpr double kCoarseReach = 6.0;  // sampling distances
 constexpr double kFineReach = 2.5;    // sampling distances
-constexpr double kEndReach = 1.0;     // sampling distances
+constexpr double kPlace = 0.25;       // diameters between centers that are at the same place
+constexpr std::size_t kPerPlace = 5;
+constexpr double kEndReach = 1.0;  // sampling distances
 
 void score_all(const Scan& scan, const ModelProbe& probe, std::vector<Hypothesis>& hypotheses,
                double tolerance) {
@@ -36,16 +38,24 @@ bool nearly_equal(const Pose& a, const Pose& b, const MeshShape& shape, double d
     return centers.norm() + angle * shape.radius < distance;
 }
 
-// The best `count` hypotheses, each farther than `distance` from every better one.
+// The best `count` hypotheses, each farther than `distance` from every better one, and at most
+// kPerPlace with their centers at about the same place: the many poses of a symmetric part must not
+// crowd out its other instances.
 void thin_out(std::vector<Hypothesis>& hypotheses, std::size_t count, const MeshShape& shape,
               double distance) {
     std::vector<Hypothesis> kept;
     for (const Hypothesis& hypothesis : hypotheses) {
         if (kept.size() == count) break;
-        const bool twin = std::any_of(kept.begin(), kept.end(), [&](const Hypothesis& better) {
-            return nearly_equal(hypothesis.T_scene_model, better.T_scene_model, shape, distance);
-        });
-        if (!twin) kept.push_back(hypothesis);
+        const Vec3d center = hypothesis.T_scene_model * shape.center;
+        std::size_t same_place = 0;
+        bool twin = false;
+        for (const Hypothesis& better : kept) {
+            twin = twin ||
+                   nearly_equal(hypothesis.T_scene_model, better.T_scene_model, shape, distance);
+            const double apart = (center - better.T_scene_model * shape.center).norm();
+            if (apart < kPlace * shape.diameter) ++same_place;
+        }
+        if (!twin && same_place < kPerPlace) kept.push_back(hypothesis);
     }
     hypotheses = std::move(kept);
 }

@@ -13,9 +13,10 @@ struct RecognitionSettings {
     double plane_share = 0.15;    ///< of the scan's points that a plane must hold to be a table
     double tolerance = 1.5;       ///< distance of model from scan that counts as agreement
     int segment_matches = 12;     ///< entries tried for each segment
+    int max_keypoints = 1500;         ///< of the scan; more are thinned out evenly
     double keypoint_spacing = 3.0;  ///< between the scan's keypoints
-    int candidates_per_model = 40;  ///< poses of each model that are refined coarsely
-    int finalists_per_model = 10;   ///< of those, poses that are refined finely and verified
+    int candidates_per_model = 60;  ///< poses of each model that are refined coarsely
+    int finalists_per_model = 16;   ///< of those, poses that are refined finely and verified
     bool use_segments = true;       ///< source of hypotheses: segments and their global descriptors
     bool use_keypoints = true;      ///< source of hypotheses: local descriptors
     std::uint64_t seed = 0;         ///< for the plane's random trials

@@ -13,11 +13,12 @@ constexpr double kMaxShared = 0.35;    // of a hypothesis' support that better o
 constexpr std::size_t kMinSupport = 40;  // cells; fewer say nothing
 constexpr int kInward = 2;               // cells from the outline into the model, past the rim,
 constexpr int kOutward = 3;              // and out of it, where normals are those of one side only
-constexpr float kContinues = 0.94F;      // cosine between normals on both sides of a smooth surface
+constexpr float kContinues = 0.9F;       // cosine between normals on both sides of a smooth surface
 constexpr std::size_t kMinOutline = 12;  // cells of outline; fewer say nothing
 constexpr double kMaxOpen = 0.3;         // open share of the outline that true objects reach
 
-// Logistic regression on simulated scenes; see docs/recognition.md.
+// Logistic regression on simulated scenes, and a penalty for what only fits into a larger surface;
+// see docs/recognition.md.
 double confidence_of(const Verified& v, const Scan& scan, const MeshShape& shape) {
     if (v.support < kMinSupport || v.silhouette == 0) return 0.0;
     const auto support = static_cast<double>(v.support);
@@ -28,7 +29,7 @@ double confidence_of(const Verified& v, const Scan& scan, const MeshShape& shape
     const double area = support * cell_area / (shape.diameter * shape.diameter);
     const double logit = 22.0 * (agreement - 0.80) + 14.0 * std::min(v.visible_fraction, 0.5) +
                          10.0 * std::min(area, 0.12) - 3.2 - 20.0 * v.sunk -
-                         20.0 * std::max(0.0, v.open - kMaxOpen);
+                         30.0 * std::max(0.0, v.open - kMaxOpen);
     return 1.0 / (1.0 + std::exp(-logit));
 }
 
@@ -67,12 +68,16 @@ class Silhouette {
     std::vector<bool> covered_;
 };
 
-// Whether two measured cells show one smooth surface.
-bool continues(const Scan& scan, std::uint32_t inside, std::uint32_t outside) {
+// Whether a cell of the silhouette and one outside of it show one smooth surface.
+bool continues(const Scan& scan, const Silhouette& silhouette, std::uint32_t inside,
+               std::uint32_t outside) {
     if (inside == kNoIndex || outside == kNoIndex) return false;
     const std::uint32_t a = scan.ranges[inside].point;
     const std::uint32_t b = scan.ranges[outside].point;
     if (a == kNoIndex || b == kNoIndex || !scan.ranges[outside].measured()) return false;
+    // A cell may have borrowed its point from the rim of the model.
+    const std::uint32_t own = scan.ranges.cell_of(scan.cloud.points[b]);
+    if (own == kNoIndex || silhouette.covers(silhouette.u(own), silhouette.v(own))) return false;
     const Vec3f& normal = scan.cloud.normals[a];
     if (normal.dot(scan.cloud.normals[b]) < kContinues) return false;
     const float off = normal.dot(scan.cloud.points[b] - scan.cloud.points[a]);
@@ -96,7 +101,7 @@ double open_share(const Scan& scan, const Silhouette& silhouette,
             if (!std::binary_search(supported.begin(), supported.end(), inside)) continue;
             ++outline;
             const std::uint32_t outside = silhouette.cell(u + kOutward * du, v + kOutward * dv);
-            if (continues(scan, inside, outside)) ++open;
+            if (continues(scan, silhouette, inside, outside)) ++open;
         }
     }
     return outline < kMinOutline ? 0.0 : static_cast<double>(open) / static_cast<double>(outline);
