@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "ostraka/base/stopwatch.hpp"
+#include "ostraka/io/atomic_file.hpp"
 #include "ostraka/library/build.hpp"
 #include "ostraka/library/library_file.hpp"
 
@@ -98,6 +99,7 @@ void run_build(BuildOptions& options) {
         settings.cuts.fractions = parse_numbers(options.fractions, "--fractions");
     }
     if (!options.descriptors.empty()) settings.descriptors = parse_descriptors(options.descriptors);
+    { const AtomicFile writable(options.output); }  // better to fail now than after the build
     std::vector<ModelSource> models;
     for (const std::string& path : options.models) models.push_back(load_model(path));
     settings.unit = require_unit(options.unit, options.unit.empty() ? size_hint(models) : "");
@@ -124,7 +126,7 @@ void add_build(CLI::App& app) {
     LibrarySettings& settings = options->settings;
     command
         ->add_option("--views", settings.views.count,
-                     "viewpoints around each model: 12, 20, 42, 80, 162, 320, 642")
+                     "viewpoints around each model: 12, 20, 42, 80, 162, 320, 642, ...")
         ->capture_default_str();
     command->add_option("--sampling", settings.sampling,
                         "distance between points, in --unit (default: 1 % of the median diameter)");

@@ -96,7 +96,7 @@ void add_classify(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--k", options->k, "nearest entries that vote")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1, 100000));
     add_common(*command, options->common);
     command->callback([options] { run_classify(*options); });
 }

@@ -46,7 +46,7 @@ void run_segments(SegmentOptions& options) {
         const double resolution = mesh_resolution(library.models.front().surface.points);
         for (const double noise : parse_numbers(options.noise, "--noise")) {
             SegmentSettings settings = options.settings;
-            settings.views.sensor.noise = noise * resolution;
+            settings.views.sensor = {.noise = noise * resolution, .seed = settings.views.seed};
             const auto segments = simulate_segments(models, settings, progress_bar());
             double visible = 0.0;
             for (const LabeledSegment& segment : segments) visible += segment.visible_fraction;
@@ -162,7 +162,9 @@ void add_segments(CLI::App& parent) {
         ->capture_default_str();
     command->add_option("--max-visible", options->settings.max_visible, "greatest visible fraction")
         ->capture_default_str();
-    command->add_option("--k", options->k, "nearest entries that vote")->capture_default_str();
+    command->add_option("--k", options->k, "nearest entries that vote")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 100000));
     command->add_option("--seed", options->settings.views.seed, "seed of the scenes")
         ->capture_default_str();
     add_common(*command, options->common);

@@ -68,7 +68,7 @@ void add_parts(CLI::App& app) {
     command->add_option("--seed", options->settings.seed,
                         "0: the nominal part; others vary its proportions");
     command->add_option("--variants", options->variants, "make so many of each, seed upward")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1, 1000000));
     command->add_option("--format", options->format, "ply, stl, obj or off")
         ->capture_default_str()
         ->check(CLI::IsMember({"ply", "stl", "obj", "off"}));

@@ -122,10 +122,10 @@ void add_simulate(CLI::App& app) {
     add_unit(*command, options->unit, "unit of the numbers in the model files, and of the scans");
     command->add_option("--scenes", options->scenes, "scans to make")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1, 1000000));
     command->add_option("--objects", options->objects, "objects in a tabletop scene")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1, 1000000));
     command
         ->add_option("--spacing", options->spacing,
                      "between neighbors on the table, in mean diameters")

@@ -11,6 +11,12 @@ namespace {
 
 using namespace recognition_testing;
 
+std::vector<std::vector<Correspondence>> matches_of(const Scan& scan) {
+    std::vector<WideRows> rows;
+    for (const Model& model : library().models) rows.push_back(widen(model.keypoints.rows));
+    return match_keypoints(scan, library(), rows, {});
+}
+
 Pose random_pose(Random& random) {
     Pose T_scene_model = Pose::Identity();
     T_scene_model.linear() = random.rotation();
@@ -24,7 +30,7 @@ Vec3f anywhere(Random& random) {
 }
 
 // A match of two places without relation.
-Correspondence outlier(Random& random, std::uint32_t distance) {
+Correspondence outlier(Random& random, std::int32_t distance) {
     return {anywhere(random), anywhere(random), random.rotation().cast<float>(), distance};
 }
 
@@ -44,7 +50,7 @@ TEST(PosesFromMatches, AConsistentGroupIsFoundAmongOutliers) {
         Random random(seed);
         const Pose truth = random_pose(random);
         std::vector<Correspondence> matches;
-        for (std::uint32_t i = 0; i < 60; ++i) {
+        for (std::int32_t i = 0; i < 60; ++i) {
             matches.push_back(outlier(random, i));
             if (i % 6 != 0) continue;
             // Right places with useless frames: only their group can tell the pose.
@@ -64,10 +70,25 @@ TEST(PosesFromMatches, NothingFromNothing) {
     EXPECT_TRUE(poses_from_matches({}, 1.0).empty());
 }
 
+TEST(Widen, KeepsValuesAndSquares) {
+    const std::vector<std::uint8_t>& rows = library().models[kCorner].keypoints.rows;
+    const WideRows wide = widen(rows);
+    ASSERT_EQ(wide.values.size(), rows.size());
+    ASSERT_EQ(wide.squares.size(), rows.size() / kShotLength);
+    for (std::size_t r = 0; r < wide.squares.size(); ++r) {
+        std::int32_t sum = 0;
+        for (std::size_t i = r * kShotLength; i < (r + 1) * kShotLength; ++i) {
+            ASSERT_EQ(wide.values[i], rows[i]);
+            sum += std::int32_t{rows[i]} * std::int32_t{rows[i]};
+        }
+        ASSERT_EQ(wide.squares[r], sum);
+    }
+}
+
 TEST(MatchKeypoints, TheBestMatchesOfAModelsOwnViewAreRight) {
     for (const std::uint32_t model : {kCorner, kPlate}) {
         const SimulatedScene scene = alone(model, 3);
-        const auto matches = match_keypoints(prepared(scene), library(), {});
+        const auto matches = matches_of(prepared(scene));
         ASSERT_EQ(matches.size(), library().models.size());
         ASSERT_GT(matches[model].size(), 40U);
         EXPECT_EQ(matches[kCorner].size(), matches[kPlate].size());
@@ -101,7 +122,7 @@ TEST(MatchKeypoints, TheBestMatchesOfAModelsOwnViewAreRight) {
 TEST(MatchKeypoints, LeadToThePose) {
     const SimulatedScene scene = alone(kPlate, 6);
     const Scan scan = prepared(scene);
-    const auto matches = match_keypoints(scan, library(), {});
+    const auto matches = matches_of(scan);
     double best = 1.0;
     for (const Pose& pose : poses_from_matches(matches[kPlate], 2.0 * scan.sampling)) {
         best = std::min(best, pose_error(kPlate, scene.objects[0].T_scene_model, pose));
@@ -112,9 +133,9 @@ TEST(MatchKeypoints, LeadToThePose) {
 TEST(MatchKeypoints, AreTheSameForAnyNumberOfThreads) {
     const Scan scan = prepared(alone(kCorner, 2));
     set_thread_count(1);
-    const auto one = match_keypoints(scan, library(), {});
+    const auto one = matches_of(scan);
     set_thread_count(4);
-    const auto four = match_keypoints(scan, library(), {});
+    const auto four = matches_of(scan);
     set_thread_count(0);
     for (std::size_t m = 0; m < one.size(); ++m) {
         ASSERT_EQ(one[m].size(), four[m].size());

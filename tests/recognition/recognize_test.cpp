@@ -213,10 +213,12 @@ TEST(Recognize, ReportsNothingWhereNoModelIs) {
     testing::add_box(room, Vec3f(-400, 400, 0), Vec3f(400, 410, 500));
     const SceneModels rooms = scene_models({room});
     const PlacedModel placed{0, Pose::Identity()};
-    const SimulatedScene scene =
-        simulate_scene(rooms, {&placed, 1},
-                       {.T_camera_world = look_at(Vec3d(350, -350, 400), Vec3d(-300, 300, 0))});
-    EXPECT_EQ(names(recognizer.recognize(scene.cloud)), "");
+    for (const double noise : {0.0, 0.5}) {
+        SceneView view{.T_camera_world = look_at(Vec3d(350, -350, 400), Vec3d(-300, 300, 0))};
+        view.sensor.noise = noise;
+        const SimulatedScene scene = simulate_scene(rooms, {&placed, 1}, view);
+        EXPECT_EQ(names(recognizer.recognize(scene.cloud)), "") << noise;
+    }
 }
 
 TEST(Recognize, TheThresholdDecidesWhatIsReported) {

@@ -2,11 +2,10 @@
 #include "ostraka/library/library_file.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
-
 #include <cmath>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/io/atomic_file.hpp"
 #include "ostraka/library/encoding.hpp"
 #include "ostraka/library/settings_text.hpp"
 #include "ostraka/library/sqlite.hpp"
@@ -30,32 +29,6 @@ CREATE TABLE entry(id INTEGER PRIMARY KEY, model INTEGER NOT NULL REFERENCES mod
 CREATE TABLE descriptor(name TEXT NOT NULL, entry INTEGER NOT NULL REFERENCES entry(id),
     row BLOB NOT NULL, PRIMARY KEY(name, entry)) WITHOUT ROWID;
 )sql";
-
-// Removes the temporary file unless it was put in place.
-class Temporary {
-  public:
-    explicit Temporary(const std::filesystem::path& target)
-        : target_(target), path_(target.string() + fmt::format(".tmp{}", ::getpid())) {
-        std::filesystem::remove(path_);
-    }
-    ~Temporary() {
-        std::error_code ignored;
-        std::filesystem::remove(path_, ignored);
-        std::filesystem::remove(path_.string() + "-journal", ignored);
-    }
-    Temporary(const Temporary&) = delete;
-    Temporary& operator=(const Temporary&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-    void put_in_place() {
-        std::error_code problem;
-        std::filesystem::rename(path_, target_, problem);
-        if (problem) throw FileError(target_, problem.message());
-    }
-
-  private:
-    std::filesystem::path target_;
-    std::filesystem::path path_;
-};
 
 template <class T>
 std::span<const T> as_span(const std::vector<T>& values) {
@@ -327,9 +300,9 @@ ModelLibrary load_content(Database& database) {
 
 void save_library(const ModelLibrary& library, const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) throw FileError(path, "is a folder");
-    Temporary temporary(path);
+    AtomicFile file(path);
     {
-        Database database(temporary.path(), Database::Mode::create);
+        Database database(file.temporary(), Database::Mode::create, path);
         database.run("PRAGMA journal_mode=MEMORY; PRAGMA synchronous=FULL; PRAGMA page_size=8192;");
         database.run(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
                                  kApplicationId, kLibraryFormat)
@@ -348,13 +321,13 @@ void save_library(const ModelLibrary& library, const std::filesystem::path& path
         save_descriptors(database, library);
         database.run("COMMIT");
     }
-    temporary.put_in_place();
+    file.commit();
 }
 
 ModelLibrary load_library(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path)) throw FileError(path, "no such file");
     if (std::filesystem::is_directory(path)) throw FileError(path, "is a folder");
-    Database database(path, Database::Mode::read);
+    Database database(path, Database::Mode::read, path);
     if (pragma(database, "PRAGMA application_id") != kApplicationId) {
         throw FormatError(path, "header", "not an Ostraka library");
     }

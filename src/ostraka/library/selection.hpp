@@ -16,7 +16,7 @@
 namespace ostraka {
 
 struct SelectionSettings {
-    int budget = 256; ///< entries a model, at most; the same for all, so that votes are fair
+    int budget = 256;  ///< entries a model, at most; the same for all, so that votes are fair
     double max_overlap = 0.9;  ///< overlap (intersection over union) with an earlier candidate that
                                ///< makes one redundant; above 1 nothing is
 };

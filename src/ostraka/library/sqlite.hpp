@@ -17,7 +17,8 @@ class Database {
   public:
     enum class Mode { read, create };
     /// @throws FileError if the file can't be opened or created.
-    Database(const std::filesystem::path& path, Mode mode);
+    /// @param named  what messages call the file.
+    Database(const std::filesystem::path& path, Mode mode, const std::filesystem::path& named);
     ~Database();
     Database(const Database&) = delete;
     Database& operator=(const Database&) = delete;

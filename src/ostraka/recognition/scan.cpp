@@ -63,7 +63,9 @@ bool is_table(const PointCloud& cloud, const Plane& plane, double model_diameter
 
 Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
                   const RecognitionSettings& settings) {
-    const PointCloud valid = remove_invalid(raw);
+    PointCloud points = raw;
+    points.normals.clear();  // worked out anew at the library's density, as for its views
+    const PointCloud valid = remove_invalid(points);
     check_size(valid, raw.size(), model_diameter);
     PointCloud cloud = resample(valid, sampling);
     cloud.colors.clear();

@@ -8,7 +8,7 @@
 namespace ostraka {
 
 struct ViewSettings {
-    int count = 42;                ///< viewpoints: 12, 20, 42, 80, 162, 320, 642 or 1280
+    int count = 42;                ///< viewpoints: 12, 20, 42, 80, 162, 320, 642, 1280 or 2562
     double sampling = 0.0;         ///< distance between the points of a view, in the model's unit
     double distance = 3.0;         ///< from the model's center to the sensor, in model diameters
     double rays_per_sample = 2.0;  ///< rays cast along each sampling distance, before resampling
