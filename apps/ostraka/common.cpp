@@ -125,6 +125,7 @@ void write_json(const Json& json, const std::string& path) {
     const std::string text = json.dump(2) + "\n";
     if (path == "-") {
         std::cout << text << std::flush;
+        if (!std::cout) throw FileError("standard output", "can't be written");
     } else {
         write_file_atomically(path, text);
     }

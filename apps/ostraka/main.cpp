@@ -2,6 +2,7 @@
 // The `ostraka` command. Errors become one line on standard error and a documented exit code.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 
 #include "commands.hpp"
@@ -15,6 +16,14 @@ using namespace ostraka;
 int fail(const std::string& problem, int code) {
     fmt::print(stderr, "ostraka: {}\n", problem);
     return code;
+}
+
+// A first word that is neither an option nor a command: CLI11 would only say that one is missing.
+bool names_no_command(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return false;
+    const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
+    return std::none_of(commands.begin(), commands.end(),
+                        [&](const CLI::App* command) { return command->get_name() == argv[1]; });
 }
 
 int run(int argc, char** argv) {
@@ -36,6 +45,10 @@ int run(int argc, char** argv) {
     app::add_parts(app);
     app::add_simulate(app);
     app::add_evaluate(app);
+    if (names_no_command(app, argc, argv)) {
+        return fail(fmt::format("there is no command {}; see ostraka --help", argv[1]),
+                    app::kUsage);
+    }
     try {
         app.parse(argc, argv);
         return app::kOk;

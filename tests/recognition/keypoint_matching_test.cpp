@@ -114,8 +114,7 @@ TEST(MatchKeypoints, TheBestMatchesOfAModelsOwnViewAreRight) {
             const Vec3d& center = models().shapes[model].center;
             chance += right_share(disturbed(truth, center, 2.0, 0.0, seed)) / 20.0;
         }
-        std::printf("right %g chance %g\n", right_share(truth), chance);
-        EXPECT_GT(right_share(truth), 2.0 * chance) << model;
+        EXPECT_GT(right_share(truth), 5.0 * chance) << model;
     }
 }
 
