@@ -4,6 +4,7 @@
 
 Usage: command_line_test.py PATH_OF_OSTRAKA
 """
+import hashlib
 import json
 import math
 import os
@@ -69,6 +70,18 @@ def write_xyz(path, points):
             file.write("%.9g %.9g %.9g\n" % tuple(p))
 
 
+def lzf_literals(data):
+    """A valid LZF stream of literal runs only: a length byte below 32, then that many + 1 bytes."""
+    return b"".join(bytes([len(data[i:i + 32]) - 1]) + data[i:i + 32]
+                    for i in range(0, len(data), 32))
+
+
+def folder_state(folder):
+    """Names and digests of all files, so that leftovers and changes show."""
+    return {name: hashlib.sha256(open(os.path.join(folder, name), "rb").read()).hexdigest()
+            for name in os.listdir(folder)}
+
+
 class CommandLine(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -117,6 +130,22 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(done.returncode, 0)
             self.assertIn("--help", done.stdout)
         self.assertEqual(run("--version").returncode, 0)
+
+    def test_help_explains_every_option(self):
+        for command in ("build", "recognize", "classify", "inspect", "views", "parts", "simulate",
+                        "evaluate segments", "evaluate scenes"):
+            lines = run(*command.split(), "--help").stdout.splitlines()
+            self.assertGreater(len(lines[0]), 20, command)  # what the command does
+            options = [i for i, line in enumerate(lines) if line.startswith("  -")]
+            self.assertGreater(len(options), 2, command)
+            for i in options:
+                # The explanation stands behind the option, or on the next line.
+                _, _, text = lines[i].strip().partition("  ")
+                text = text.strip() or (lines + [""])[i + 1].strip()
+                self.assertGreater(len(text), 8, command + ": " + lines[i])
+        text = run("--help").stdout
+        for word in ("ostraka build", "ostraka recognize", "Exit codes", "130"):
+            self.assertIn(word, text)
 
     def test_build_reports_every_rule(self):
         for model in json.loads(self.built.stdout)["models"]:
@@ -195,7 +224,21 @@ class CommandLine(unittest.TestCase):
         files = [self.path("a.pcd", header + text), self.path("a.xyz", text),
                  self.path("a.ply", ply % ("ascii", len(points)) + text),
                  self.path("b.ply", (ply % ("binary_little_endian", len(points))).encode() + packed)]
+        # The other encodings of PCD: by points, by planes in LZF, and with a grid that has holes.
+        binary = header.replace("DATA ascii", "DATA binary").encode()
+        planes = b"".join(struct.pack("<%df" % len(points), *axis) for axis in zip(*points))
+        compressed = lzf_literals(planes)
+        grid = (header.replace("WIDTH %d" % len(points), "WIDTH 2")
+                .replace("HEIGHT 1", "HEIGHT %d" % len(points))
+                .replace("POINTS %d" % len(points), "POINTS %d" % (2 * len(points)))
+                .replace("DATA ascii", "DATA binary").encode())
+        hole = struct.pack("<3f", *[math.nan] * 3)
+        files += [self.path("b.pcd", binary + packed),
+                  self.path("c.pcd", binary.replace(b"DATA binary", b"DATA binary_compressed") +
+                            struct.pack("<II", len(compressed), len(planes)) + compressed),
+                  self.path("d.pcd", grid + b"".join(struct.pack("<3f", *p) + hole for p in points))]
         answers = [self.recognize(self.library, file)["objects"] for file in files]
+        self.assertEqual(len(answers[0]), 3)
         for answer in answers[1:]:
             self.assertEqual(answer, answers[0])
 
@@ -224,6 +267,31 @@ class CommandLine(unittest.TestCase):
         self.assertTrue(os.path.getsize(sheet) > 1000)
         done = run("evaluate", "scenes", self.library, "--scenes", 1, "--json", "-")
         self.assertIn("recall", json.loads(done.stdout))
+
+    def test_nothing_found_is_a_result(self):
+        ball = self.path("ball.xyz")
+        write_xyz(ball, [(60 * math.sin(p) * math.cos(t), 60 * math.sin(p) * math.sin(t),
+                          300 - 60 * math.cos(p))
+                         for p in (0.01 * i for i in range(1, 150)) for t in (0.02 * j for j in range(314))])
+        self.assertEqual(self.recognize(self.library, ball)["objects"], [])
+        self.assertIn("no object", run("recognize", self.library, ball).stderr)
+
+    def test_segments_random_views_and_variants(self):
+        done = run("evaluate", "segments", self.library, "--scenes", 2, "--json", "-")
+        rates = json.loads(done.stdout)["results"][0]["recognition_rate"]
+        self.assertEqual(sorted(rates), ["esf", "fused", "gasd", "rops", "shot", "vfh"])
+        self.assertTrue(all(0 <= rate <= 1 for rate in rates.values()))
+        folder = self.path("random")
+        done = run("simulate", "random-views", *self.models, "--unit", "mm", "--scenes", 1,
+                   "--format", "ply", "-o", folder, "--json", "-")
+        scenes = json.loads(done.stdout)["scenes"]
+        self.assertEqual(json.load(open(os.path.join(folder, "scene_0000.json"))), scenes[0])
+        self.assertTrue(os.path.exists(os.path.join(folder, scenes[0]["scene"])))
+        done = run("parts", "cam", "--variants", 2, "--format", "stl", "-o", folder, "--json", "-")
+        made = json.loads(done.stdout)
+        self.assertEqual((made["unit"], made["parts"]), ("mm", ["cam.stl", "cam_1.stl"]))
+        first, second = (open(os.path.join(folder, name), "rb").read() for name in made["parts"])
+        self.assertNotEqual(first, second)
 
     # ---- bad input -------------------------------------------------------------------------------
 
@@ -257,9 +325,13 @@ class CommandLine(unittest.TestCase):
         for name, content, code in cases:
             with self.subTest(name):
                 path = self.path(name, content) if content is not None else self.path(name)
-                done = run("recognize", self.library, path, "--unit", "mm", "--json", "-")
+                outputs = [self.path("never.json"), self.path("never.png")]
+                done = run("recognize", self.library, path, "--unit", "mm", "--json", outputs[0],
+                           "--picture", outputs[1])
                 self.assert_fails(done, code or done.returncode)
                 self.assertNotEqual(done.returncode, 0)
+                self.assertFalse(any(map(os.path.exists, outputs)))
+                self.assert_fails(run("classify", self.library, path), done.returncode)
         for unit in ("m", "in"):
             if unit == "m":  # 1000 times too large
                 self.assert_fails(run("recognize", self.library, self.scan, "--unit", unit), INVALID)
@@ -272,7 +344,11 @@ class CommandLine(unittest.TestCase):
         self.assert_fails(run("inspect", self.path("cut.ostraka", bytes(data[:5000]))), FORMAT)
         self.assert_fails(run("inspect", self.path("text.ostraka", "no library" * 300)), FORMAT)
         self.assert_fails(run("inspect", self.path("none.ostraka")), FILE)
-        data[63] = 77
+        self.assert_fails(run("inspect", self.path("half.ostraka", bytes(data[:len(data) // 2]))), FORMAT)
+        foreign = bytearray(data)
+        foreign[71] ^= 1  # SQLite keeps the application's number in bytes 68 to 71
+        self.assert_fails(run("inspect", self.path("foreign.ostraka", bytes(foreign))), FORMAT)
+        data[63] = 77  # and its format number in bytes 60 to 63
         done = run("inspect", self.path("later.ostraka", bytes(data)))
         self.assert_fails(done, FORMAT)
         self.assertIn("77", done.stderr)
@@ -297,6 +373,29 @@ class CommandLine(unittest.TestCase):
         self.assert_fails(run("build", *self.models, "-o", inside_a_file, *QUICK), FILE)
         self.assert_fails(run("build", *self.models, "-o", self.folder, *QUICK), FILE)
 
+    def test_unwritable_reports_are_named(self):
+        for option, command in (("--picture", ["recognize", self.library, self.scan]),
+                                ("--overlay", ["recognize", self.library, self.scan]),
+                                ("--json", ["inspect", self.library]),
+                                ("--picture", ["inspect", self.library])):
+            with self.subTest(command[0] + option):
+                ending = {"--picture": ".png", "--overlay": ".ply", "--json": ".json"}[option]
+                place = os.path.join(self.models[0], "x" + ending)
+                done = run(*command, option, place)
+                self.assertEqual(done.returncode, FILE, done.stderr)
+                self.assertTrue(done.stderr.splitlines()[-1].startswith("ostraka: "), done.stderr)
+                self.assertIn(place, done.stderr.splitlines()[-1])
+        for command in (["parts", "cam"], ["views", self.models[0]]):
+            self.assert_fails(run(*command, "-o", self.models[0]), FILE)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "needs /dev/full")
+    def test_json_that_cannot_be_printed_is_an_error(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([OSTRAKA, "inspect", self.library, "--json", "-"], stdout=full,
+                                  stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, FILE, done.stderr)
+        self.assertTrue(done.stderr.splitlines()[-1].startswith("ostraka: "))
+
     def test_full_disk_keeps_the_earlier_library(self):
         folder = self.path("full")
         os.makedirs(folder)
@@ -316,15 +415,19 @@ class CommandLine(unittest.TestCase):
         for number in (signal.SIGINT, signal.SIGTERM):
             folder = self.path("interrupted_%d" % number)
             os.makedirs(folder)
+            library = os.path.join(folder, "x.ostraka")
+            if number == signal.SIGINT:
+                shutil.copy(self.library, library)
+            before = folder_state(folder)
             process = subprocess.Popen(
-                [OSTRAKA, "build", *self.models, "-o", os.path.join(folder, "x.ostraka"), "--unit", "mm",
+                [OSTRAKA, "build", *self.models, "-o", library, "--unit", "mm",
                  "--views", "642"], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
             time.sleep(1.0)
             process.send_signal(number)
             _, errors = process.communicate(timeout=60)
             self.assertEqual(process.returncode, INTERRUPTED, errors)
             self.assertIn("ostraka: interrupted", errors)
-            self.assertEqual(os.listdir(folder), [])
+            self.assertEqual(folder_state(folder), before)
 
 
 if __name__ == "__main__":
