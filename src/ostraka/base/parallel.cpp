@@ -28,8 +28,8 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
     // Isolated: a thread that waits here for an inner loop doesn't start another item of an outer
     // one, which would pile up memory and break thread-local scratch space.
     tbb::this_task_arena::isolate([&] {
-        // A context of its own: an exception in an outer loop would otherwise cancel this one, which
-        // would return as if it were done, with items left out.
+        // A context of its own: an exception in an outer loop would otherwise cancel this one,
+        // which would return as if it were done, with items left out.
         tbb::task_group_context context(tbb::task_group_context::isolated);
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, count, grain),

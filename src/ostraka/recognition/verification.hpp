@@ -5,6 +5,7 @@
 #pragma once
 
 #include "ostraka/recognition/hypothesis.hpp"
+#include "ostraka/recognition/outline.hpp"
 
 namespace ostraka {
 
@@ -17,9 +18,7 @@ struct Verified {
     std::size_t violation = 0;   ///< of these: the scan saw through, or the surface faces elsewhere
     std::size_t missing = 0;     ///< of these: nothing was measured
     double sunk = 0.0;           ///< share of the silhouette that would be below the table
-    double open = 0.0;           ///< share of the supported outline beyond which the scan's surface
-                                 ///< goes on smoothly: near 0 for an object, near 1 for a face of a
-                                 ///< model laid into a wall
+    double open = 0.0;           ///< open_share(): where the model ends, the scan's surface doesn't
     double inlier_rms =
         0.0;  ///< of the distances of supporting cells, along the normal; scan's unit
     double visible_fraction = 0.0;     ///< support / silhouette
