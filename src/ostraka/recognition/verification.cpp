@@ -13,7 +13,7 @@ constexpr double kMaxShared = 0.35;    // of a hypothesis' support that better o
 constexpr std::size_t kMinSupport = 40;  // cells; fewer say nothing
 constexpr double kMaxOpen = 0.3;         // open share of the outline that true objects reach
 
-// Logistic regression on simulated scenes, and a penalty for what only fits into a larger surface;
+// A logistic function with coefficients set by hand (not calibrated), and a penalty for what only fits into a larger surface;
 // see docs/recognition.md.
 double confidence_of(const Verified& v, const Scan& scan, const MeshShape& shape) {
     if (v.support < kMinSupport || v.silhouette == 0) return 0.0;
