@@ -13,8 +13,8 @@ constexpr double kMaxShared = 0.35;    // of a hypothesis' support that better o
 constexpr std::size_t kMinSupport = 40;  // cells; fewer say nothing
 constexpr double kMaxOpen = 0.3;         // open share of the outline that true objects reach
 
-// A logistic function with coefficients set by hand (not calibrated), and a penalty for what only fits into a larger surface;
-// see docs/recognition.md.
+// A logistic function with coefficients set by hand (not calibrated), and a penalty for what only
+// fits into a larger surface; see docs/recognition.md.
 double confidence_of(const Verified& v, const Scan& scan, const MeshShape& shape) {
     if (v.support < kMinSupport || v.silhouette == 0) return 0.0;
     const auto support = static_cast<double>(v.support);
