@@ -23,19 +23,20 @@ struct ClassifyOptions {
     std::size_t k = 1;
 };
 
-PointCloud load_segment(const std::string& path, const ClassifyOptions& options,
-                        const LibrarySettings& settings) {
+PreparedSegment load_segment(const std::string& path, const ClassifyOptions& options,
+                             const LibrarySettings& settings) {
     PointCloud cloud = read_cloud_file(path).cloud;
     if (const auto viewpoint = parse_viewpoint(options.viewpoint)) cloud.viewpoint = *viewpoint;
     const Unit unit = parse_unit(options.unit).value_or(settings.unit);
-    cloud = prepare_segment(scaled(cloud, unit_factor(unit, settings.unit)), settings);
-    if (cloud.size() < 10) {
+    cloud = scaled(std::move(cloud), unit_factor(unit, settings.unit));
+    PreparedSegment segment = prepare_segment(cloud, settings);
+    if (segment.piece.size() < 10) {
         throw InvalidInput(
             fmt::format("{}: {} points at the library's sampling distance {:.4g} {}: "
                         "at least 10 are needed (is the unit right?)",
-                        path, cloud.size(), settings.sampling, unit_name(settings.unit)));
+                        path, segment.piece.size(), settings.sampling, unit_name(settings.unit)));
     }
-    return cloud;
+    return segment;
 }
 
 Json ranking_json(const std::vector<RankedModel>& ranking, const ModelLibrary& library) {
@@ -66,7 +67,7 @@ void run_classify(const ClassifyOptions& options) {
     std::vector<std::vector<std::string>> rows = {
         {"segment", "model", "score", "votes", "distance", "second"}};
     for (const std::string& path : options.segments) {
-        const PointCloud segment = load_segment(path, options, library.settings);
+        const PreparedSegment segment = load_segment(path, options, library.settings);
         const auto ranking = classify(index, segment, options.descriptor, options.k);
         segments.push_back({{"file", path}, {"ranking", ranking_json(ranking, library)}});
         const RankedModel& best = ranking.front();
@@ -91,8 +92,10 @@ void add_classify(CLI::App& app) {
              "unit of the numbers in the segments (default: the library's)");
     add_viewpoint(*command, options->viewpoint);
     command
-        ->add_option("--descriptor", options->descriptor,
-                     "vfh, esf, gasd, shot, rops, or fused: all of the library's together")
+        ->add_option(
+            "--descriptor", options->descriptor,
+            "vfh, esf, gasd, shot, rops (whole piece); keypoints (local SHOT that agree on "
+            "a pose); fused: all together")
         ->capture_default_str();
     command->add_option("--k", options->k, "nearest entries that vote")
         ->capture_default_str()

@@ -28,6 +28,7 @@ struct SegmentOptions {
     CommonOptions common;
     std::vector<std::string> libraries;
     std::string noise = "0";
+    std::string metric;
     std::size_t k = 1;
     SegmentSettings settings;
 };
@@ -38,10 +39,10 @@ void run_segments(SegmentOptions& options) {
     Json results = Json::array();
     std::vector<std::vector<std::string>> rows = {{"library", "noise mr", "segments",
                                                    "mean visible", "vfh", "esf", "gasd", "shot",
-                                                   "rops", "fused"}};
+                                                   "rops", "keypoints", "fused"}};
     for (const std::string& path : options.libraries) {
         const ModelLibrary library = load_library(path);
-        const EntryIndex index(library);
+        const EntryIndex index(library, parse_metric(options.metric));
         const SceneModels models = models_of(library);
         const double resolution = mesh_resolution(library.models.front().surface.points);
         for (const double noise : parse_numbers(options.noise, "--noise")) {
@@ -162,6 +163,11 @@ void add_segments(CLI::App& parent) {
         ->capture_default_str();
     command->add_option("--max-visible", options->settings.max_visible, "greatest visible fraction")
         ->capture_default_str();
+    command
+        ->add_option("--metric", options->metric,
+                     "distance of all descriptors: l1, l2, chi_square, hellinger (default: the "
+                     "one that suits each)")
+        ->check(CLI::IsMember({"l1", "l2", "chi_square", "hellinger"}));
     command->add_option("--k", options->k, "nearest entries that vote")
         ->capture_default_str()
         ->check(CLI::Range(1, 100000));

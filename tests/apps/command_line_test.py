@@ -279,7 +279,7 @@ class CommandLine(unittest.TestCase):
     def test_segments_random_views_and_variants(self):
         done = run("evaluate", "segments", self.library, "--scenes", 2, "--json", "-")
         rates = json.loads(done.stdout)["results"][0]["recognition_rate"]
-        self.assertEqual(sorted(rates), ["esf", "fused", "gasd", "rops", "shot", "vfh"])
+        self.assertEqual(sorted(rates), ["esf", "fused", "gasd", "keypoints", "rops", "shot", "vfh"])
         self.assertTrue(all(0 <= rate <= 1 for rate in rates.values()))
         folder = self.path("random")
         done = run("simulate", "random-views", *self.models, "--unit", "mm", "--scenes", 1,

@@ -9,6 +9,7 @@
 
 #include "descriptors/shapes.hpp"
 #include "ostraka/base/error.hpp"
+#include "ostraka/descriptors/esf_samples.hpp"
 #include "ostraka/descriptors/voxel_lines.hpp"
 
 namespace ostraka {
@@ -73,6 +74,44 @@ TEST(Esf, SettingsOutOfRangeAreRejected) {
     EXPECT_THROW(describe_esf(shapes::cut_torus(10), {.samples = 0}), InvalidInput);
 }
 
+TEST(EsfSamples, TriplesAreOfDifferentPointsAndAllPairsAreEquallyLikely) {
+    // Distances 1 to 6 between four points on a line (a Golomb ruler), a little off it.
+    std::vector<EsfPoint> points;
+    for (const float x : {0.0F, 1.0F, 4.0F, 6.0F}) {
+        points.push_back({x, 0.02F * x * (6.0F - x) + 0.01F * x, 0.0F, pack_voxel(0, 0, 0)});
+    }
+    EsfSamples samples;
+    draw_esf_samples(points, {.samples = 40'000, .seed = 3}, samples);
+    ASSERT_EQ(samples.count, 40'000U);
+    for (const auto& lengths : samples.length) {
+        std::array<int, 7> count{};
+        for (std::size_t i = 0; i < samples.count; ++i) {
+            ++count[static_cast<std::size_t>(lengths[i] + 0.5F)];
+        }
+        EXPECT_EQ(count[0], 0);  // no point twice
+        for (std::size_t d = 1; d < 7; ++d) {
+            EXPECT_NEAR(count[d], 40'000.0 / 6.0, 6.0 * std::sqrt(40'000.0 / 6.0)) << d;
+        }
+    }
+}
+
+TEST(EsfSamples, MemoryIsUsedAgainWithoutATrace) {
+    const std::vector<EsfPoint> large = into_esf_grid(shapes::cut_torus(900));
+    const std::vector<EsfPoint> small = into_esf_grid(shapes::bumpy_ellipsoid(50));
+    EsfSamples fresh;
+    draw_esf_samples(small, {.samples = 3'000}, fresh);
+    EsfSamples used;
+    draw_esf_samples(large, {.samples = 5'000}, used);
+    draw_esf_samples(small, {.samples = 3'000}, used);
+    EXPECT_EQ(used.count, fresh.count);
+    EXPECT_EQ(used.longest, fresh.longest);
+    EXPECT_EQ(used.widest, fresh.widest);
+    for (std::size_t side = 0; side < 3; ++side) {
+        EXPECT_TRUE(std::equal(fresh.inside[side].begin(), fresh.inside[side].begin() + 3'000,
+                               used.inside[side].begin()));
+    }
+}
+
 // Bresenham's line as it is usually written, one voxel after another.
 std::vector<std::array<int, 3>> plain_line(std::array<int, 3> at, const std::array<int, 3>& to) {
     std::array<int, 3> difference{};
@@ -103,6 +142,11 @@ std::vector<std::array<int, 3>> plain_line(std::array<int, 3> at, const std::arr
     return voxels;
 }
 
+std::uint32_t pack(const std::array<int, 3>& v) {
+    return pack_voxel(static_cast<std::uint32_t>(v[0]), static_cast<std::uint32_t>(v[1]),
+                      static_cast<std::uint32_t>(v[2]));
+}
+
 TEST(VoxelLines, VisitTheVoxelsOfBresenhamsLine) {
     Random random(5);
     VoxelGrid grid;
@@ -110,8 +154,9 @@ TEST(VoxelLines, VisitTheVoxelsOfBresenhamsLine) {
     const auto draw = [&random] { return static_cast<int>(random.below(64)); };
     for (int i = 0; i < 3'000; ++i) {
         centers.push_back({draw(), draw(), draw()});
-        grid.add_dilated(centers.back()[0], centers.back()[1], centers.back()[2]);
+        grid.set(pack(centers.back()));
     }
+    grid.dilate();
     std::vector<bool> set(64 * 64 * 64, false);
     for (const auto& c : centers) {
         for (int x = std::max(c[0] - 1, 0); x <= std::min(c[0] + 1, 63); ++x) {
@@ -122,28 +167,31 @@ TEST(VoxelLines, VisitTheVoxelsOfBresenhamsLine) {
             }
         }
     }
-    std::vector<VoxelLine> lines;
+    std::vector<std::uint32_t> from_voxels;
+    std::vector<std::uint32_t> to_voxels;
     std::vector<std::vector<std::array<int, 3>>> expected;
     for (int i = 0; i < 200'000; ++i) {
         const std::array<int, 3> from = {draw(), draw(), draw()};
         std::array<int, 3> to = {draw(), draw(), draw()};
         if (i % 7 == 0) to[1] = from[1];
         if (i % 11 == 0) to[2] = from[2];
-        lines.push_back(voxel_line(from, to));
+        from_voxels.push_back(pack(from));
+        to_voxels.push_back(pack(to));
         expected.push_back(plain_line(from, to));
     }
-    lines.push_back(voxel_line({5, 6, 7}, {5, 6, 7}));
+    from_voxels.push_back(pack({5, 6, 7}));
+    to_voxels.push_back(pack({5, 6, 7}));
     expected.push_back(plain_line({5, 6, 7}, {5, 6, 7}));
-    std::vector<std::int32_t> inside(lines.size());
-    trace_lines(grid, lines, inside);
+    std::vector<std::uint8_t> visited(expected.size());
+    std::vector<std::uint8_t> inside(expected.size());
+    trace_lines(grid, from_voxels, to_voxels, visited, inside);
     std::size_t different = 0;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
+    for (std::size_t i = 0; i < expected.size(); ++i) {
         std::int32_t count = 0;
         for (const auto& v : expected[i]) {
             if (set[static_cast<std::size_t>((v[0] * 64 + v[1]) * 64 + v[2])]) ++count;
         }
-        const bool same =
-            inside[i] == count && lines[i].length == static_cast<std::int32_t>(expected[i].size());
+        const bool same = inside[i] == count && visited[i] == expected[i].size();
         if (!same) ++different;
     }
     EXPECT_EQ(different, 0U);

@@ -116,6 +116,53 @@ TEST(Rops, ThreadCountChangesNoBit) {
     EXPECT_EQ(many.rows, one.rows);
 }
 
+TEST(Rops, TreeIsNotNeeded) {
+    const PointCloud cloud = shapes::cut_torus(700);
+    const auto triangles = triangulate(cloud);
+    const auto keypoints = some_keypoints(cloud);
+    const RopsSettings settings{.radius = 9.0F};
+    const auto with = describe_rops(cloud, KdTree(cloud.points), triangles, keypoints, settings);
+    EXPECT_EQ(with.rows, describe_rops(cloud, triangles, keypoints, settings).rows);
+}
+
+TEST(Rops, FramesComeFromAllTrianglesWithACornerInTheSupport) {
+    // The paper's double sum over the corners, written out.
+    const PointCloud cloud = shapes::bumpy_ellipsoid(1'500);
+    const auto triangles = triangulate(cloud, {.longest_edge = 30.0F});
+    const float radius = 8.0F;
+    const std::vector<Vec3f> keypoints = some_keypoints(cloud);
+    const auto result = describe_rops(cloud, triangles, keypoints, {.radius = radius});
+    std::size_t compared = 0;
+    for (std::size_t k = 0; k < keypoints.size(); ++k) {
+        const Vec3d p = keypoints[k].cast<double>();
+        Mat3d scatter = Mat3d::Zero();
+        for (const IndexTriangle& t : triangles) {
+            std::array<Vec3d, 3> a;
+            bool near = false;
+            for (std::size_t c = 0; c < 3; ++c) {
+                a[c] = cloud.points[t[c]].cast<double>() - p;
+                near = near || a[c].norm() < radius;
+            }
+            if (!near) continue;
+            const double distance = ((a[0] + a[1] + a[2]) / 3.0).norm();
+            const double weight =
+                (a[1] - a[0]).cross(a[2] - a[0]).norm() * std::pow(radius - distance, 2.0);
+            for (std::size_t i = 0; i < 3; ++i) {
+                scatter += weight * a[i] * a[i].transpose();
+                for (std::size_t j = 0; j < 3; ++j) scatter += weight * a[i] * a[j].transpose();
+            }
+        }
+        const Vec3d z = result.frames[k].row(2).transpose().cast<double>();
+        const Vec3d x = result.frames[k].row(0).transpose().cast<double>();
+        // Eigenvectors: the scatter maps the axes to multiples of themselves.
+        EXPECT_LE((scatter * z - z.dot(scatter * z) * z).norm(), 1e-5 * scatter.norm());
+        EXPECT_LE((scatter * x - x.dot(scatter * x) * x).norm(), 1e-5 * scatter.norm());
+        EXPECT_GE(x.dot(scatter * x), z.dot(scatter * z));
+        ++compared;
+    }
+    EXPECT_GE(compared, 50U);
+}
+
 TEST(Rops, BadArgumentsAreRejected) {
     const PointCloud cloud = shapes::bumpy_ellipsoid(50);
     const KdTree tree(cloud.points);

@@ -3,6 +3,7 @@
 // shape.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>

@@ -83,6 +83,14 @@ TEST(Shot, ThreadCountAndOrderOfThePointsChangeNoBit) {
     EXPECT_EQ(other.rows, one.rows);
 }
 
+TEST(Shot, TreeIsNotNeeded) {
+    const PointCloud cloud = shapes::cut_torus(700);
+    const auto keypoints = some_keypoints(cloud);
+    const auto with = describe_shot(cloud, KdTree(cloud.points), keypoints, {.radius = 9.0F});
+    const auto without = describe_shot(cloud, keypoints, {.radius = 9.0F});
+    EXPECT_EQ(with.rows, without.rows);
+}
+
 TEST(Shot, BadArgumentsAreRejected) {
     const PointCloud cloud = shapes::bumpy_ellipsoid(50);
     const KdTree tree(cloud.points);

@@ -57,6 +57,12 @@ TEST(BuildLibrary, FullViewsOnlyKeepsEveryViewAndNoCut) {
     for (const Entry& entry : library.entries) EXPECT_EQ(entry.direction, -1);
 }
 
+TEST(BuildLibrary, DescriptorsWithManyRowsAreRejected) {
+    LibrarySettings settings = quick_settings();
+    settings.descriptors = {VfhSettings{}, ShotSettings{}};
+    EXPECT_THROW(build_library(simple_models(), settings), InvalidInput);
+}
+
 TEST(BuildLibrary, OrderOfModelsDoesNotMatter) {
     std::vector<ModelSource> models = simple_models();
     const ModelLibrary a = build_library(models, quick_settings());

@@ -77,12 +77,44 @@ TEST(Classify, NamesTheModelOfAView) {
         ViewSettings views = library.settings.views;
         views.count = 12;  // none of the library's viewpoints
         const ModelView view = make_view(RayScene({model.mesh}), model.shape, views, 3);
-        for (const char* name : {"fused", "esf", "shot"}) {
-            const auto ranking = classify(index, view.cloud, name, 1);
+        const PreparedSegment segment = prepare_segment(view.cloud, library.settings);
+        for (const char* name : {"fused", "keypoints", "esf", "shot"}) {
+            const auto ranking = classify(index, segment, name, 1);
             EXPECT_EQ(ranking.front().model, m) << name;
         }
     }
-    EXPECT_THROW(classify(index, library.models[0].surface, "pfh", 1), InvalidInput);
+    const PreparedSegment whole{library.models[0].surface, library.models[0].surface};
+    EXPECT_THROW(classify(index, whole, "pfh", 1), InvalidInput);
+    EXPECT_THROW(classify(index, {}, "fused", 1), InvalidInput);
+}
+
+TEST(PrepareSegment, KeepsTheWholeAndItsLargestPiece) {
+    const LibrarySettings settings = shared_library().settings;
+    const PointCloud& surface = shared_library().models[0].surface;
+    PointCloud two = surface;
+    two.normals.clear();
+    two.viewpoint = Vec3f(0, 0, 1000);
+    for (std::size_t i = 0; i < surface.size(); i += 3) {
+        two.points.push_back(surface.points[i] + Vec3f(500, 0, 0));
+    }
+    const PreparedSegment both = prepare_segment(two, settings);
+    EXPECT_GT(both.whole.size(), both.piece.size());
+    EXPECT_GT(both.piece.size(), both.whole.size() / 2);
+    for (const Vec3f& point : both.piece.points) EXPECT_LT(point.x(), 250.0F);
+    LibrarySettings views = settings;
+    views.full_views_only = true;
+    EXPECT_EQ(prepare_segment(two, views).piece.size(), both.whole.size());
+    EXPECT_TRUE(prepare_segment({}, settings).empty());
+}
+
+TEST(EntryIndex, EveryMetricFindsAnEntrysOwnRow) {
+    const ModelLibrary& library = shared_library();
+    for (const Metric metric : {Metric::l1, Metric::l2, Metric::chi_square, Metric::hellinger}) {
+        const EntryIndex index(library, metric);
+        const auto row = std::span<const float>(library.tables[0].rows).subspan(308, 308);
+        const auto nearest = nearest_entries(index.distances(0, row), 1);
+        EXPECT_EQ(nearest[0].distance, 0.0F) << metric_name(metric);
+    }
 }
 
 }  // namespace

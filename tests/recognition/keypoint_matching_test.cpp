@@ -12,9 +12,7 @@ namespace {
 using namespace recognition_testing;
 
 std::vector<std::vector<Correspondence>> matches_of(const Scan& scan) {
-    std::vector<WideRows> rows;
-    for (const Model& model : library().models) rows.push_back(widen(model.keypoints.rows));
-    return match_keypoints(scan, library(), rows, {});
+    return match_keypoints(scan, library().settings, KeypointIndex(library()), {});
 }
 
 Pose random_pose(Random& random) {
@@ -68,21 +66,6 @@ TEST(PosesFromMatches, AConsistentGroupIsFoundAmongOutliers) {
 
 TEST(PosesFromMatches, NothingFromNothing) {
     EXPECT_TRUE(poses_from_matches({}, 1.0).empty());
-}
-
-TEST(Widen, KeepsValuesAndSquares) {
-    const std::vector<std::uint8_t>& rows = library().models[kCorner].keypoints.rows;
-    const WideRows wide = widen(rows);
-    ASSERT_EQ(wide.values.size(), rows.size());
-    ASSERT_EQ(wide.squares.size(), rows.size() / kShotLength);
-    for (std::size_t r = 0; r < wide.squares.size(); ++r) {
-        std::int32_t sum = 0;
-        for (std::size_t i = r * kShotLength; i < (r + 1) * kShotLength; ++i) {
-            ASSERT_EQ(wide.values[i], rows[i]);
-            sum += std::int32_t{rows[i]} * std::int32_t{rows[i]};
-        }
-        ASSERT_EQ(wide.squares[r], sum);
-    }
 }
 
 TEST(MatchKeypoints, TheBestMatchesOfAModelsOwnViewAreRight) {

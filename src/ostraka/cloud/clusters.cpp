@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "ostraka/base/error.hpp"
-#include "ostraka/cloud/cell_grid.hpp"
 #include "ostraka/cloud/kdtree.hpp"
+#include "ostraka/cloud/point_columns.hpp"
 
 namespace ostraka {
 namespace {
@@ -23,6 +23,7 @@ class DisjointSets {
     }
     // The smaller root wins, so the result doesn't depend on the order of unions.
     void unite(std::uint32_t a, std::uint32_t b) {
+        if (parent_[a] == parent_[b]) return;  // most pairs, once a group has formed
         a = find(a);
         b = find(b);
         parent_[std::max(a, b)] = std::min(a, b);
@@ -32,43 +33,109 @@ class DisjointSets {
     std::vector<std::uint32_t> parent_;
 };
 
-Clusters collect(DisjointSets& sets, std::size_t count, std::size_t min_size) {
-    std::vector<std::vector<std::uint32_t>> by_root(count);
-    for (std::uint32_t i = 0; i < count; ++i) by_root[sets.find(i)].push_back(i);
+// The groups of at least `min_size` points. @param root_of  of point i: equal within a group, below
+// `count`.
+template <class RootOf>
+Clusters collect(std::size_t count, std::size_t min_size, const RootOf& root_of) {
+    std::vector<std::uint32_t> roots(count);
+    std::vector<std::uint32_t> sizes(count, 0);
+    for (std::uint32_t i = 0; i < count; ++i) ++sizes[roots[i] = root_of(i)];
+    std::vector<std::uint32_t> cluster_of(count, kNoIndex);  // of a root
     Clusters clusters;
-    for (auto& group : by_root) {
-        if (!group.empty() && group.size() >= min_size) clusters.push_back(std::move(group));
+    for (const std::uint32_t root : roots) {  // in the order of the groups' smallest indices
+        if (cluster_of[root] != kNoIndex || sizes[root] < min_size) continue;
+        cluster_of[root] = static_cast<std::uint32_t>(clusters.size());
+        clusters.emplace_back().reserve(sizes[root]);
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t cluster = cluster_of[roots[i]];
+        if (cluster != kNoIndex) clusters[cluster].push_back(i);
     }
     std::stable_sort(clusters.begin(), clusters.end(),
                      [](const auto& a, const auto& b) { return a.size() > b.size(); });
     return clusters;
 }
 
-// Calls visit(i, j) once for each pair of points closer than the tolerance that isn't united yet.
-template <class Visit>
-void for_each_close_pair(std::span<const Vec3f> points, double tolerance, const Visit& visit) {
-    const CellGrid grid(points, tolerance);
-    const auto limit = static_cast<float>(tolerance * tolerance);
-    std::vector<std::uint32_t> cells;
-    for (std::uint32_t c = 0; c < grid.cell_count(); ++c) {
-        grid.neighborhood(c, cells);
-        for (const std::uint32_t other : cells) {
-            if (other < c) continue;
-            for (const std::uint32_t i : grid.members(c)) {
-                for (const std::uint32_t j : grid.members(other)) {
-                    if (other == c && j <= i) continue;
-                    if ((points[i] - points[j]).squaredNorm() < limit) visit(i, j);
+// Calls visit(s, t) once for each pair of slots whose points are closer than a tolerance.
+class ClosePairs {
+  public:
+    ClosePairs(std::span<const Vec3f> points, double tolerance)
+        : columns_(points, kWiden * tolerance),
+          limit_(static_cast<float>(tolerance * tolerance)),
+          reach_(static_cast<float>(kWiden * tolerance)) {}
+
+    const PointColumns& columns() const { return columns_; }
+
+    // Each column with itself and with the four after it that touch it: all others are farther
+    // than the tolerance, or have had their turn.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        const auto [rows, width] = columns_.columns_across();
+        for (std::size_t u = 0; u < rows; ++u) {
+            for (std::size_t v = 0; v < width; ++v) {
+                const SlotRun run = columns_.column(u * width + v);
+                if (run.begin == run.end) continue;
+                inside(run, visit);
+                if (v + 1 < width) between(run, columns_.column(u * width + v + 1), visit);
+                if (u + 1 == rows) continue;
+                const std::size_t last = std::min(v + 1, width - 1);
+                for (std::size_t w = v > 0 ? v - 1 : 0; w <= last; ++w) {
+                    between(run, columns_.column((u + 1) * width + w), visit);
                 }
             }
         }
     }
+
+  private:
+    static constexpr double kWiden = 1.0001;  // beyond rounding
+
+    bool close(std::uint32_t s, std::uint32_t t) const {
+        const float dx = columns_.coordinate(0)[s] - columns_.coordinate(0)[t];
+        const float dy = columns_.coordinate(1)[s] - columns_.coordinate(1)[t];
+        const float dz = columns_.coordinate(2)[s] - columns_.coordinate(2)[t];
+        return dx * dx + (dy * dy + dz * dz) < limit_;
+    }
+
+    template <class Visit>
+    void inside(const SlotRun& run, const Visit& visit) const {
+        const float* height = columns_.coordinate(columns_.height_axis());
+        for (std::uint32_t s = run.begin; s < run.end; ++s) {
+            for (std::uint32_t t = s + 1; t < run.end && height[t] - height[s] < reach_; ++t) {
+                if (close(s, t)) visit(s, t);
+            }
+        }
+    }
+
+    // Both runs ascend, so the window of heights in the second only moves up.
+    template <class Visit>
+    void between(const SlotRun& run, const SlotRun& other, const Visit& visit) const {
+        const float* height = columns_.coordinate(columns_.height_axis());
+        std::uint32_t first = other.begin;
+        for (std::uint32_t s = run.begin; s < run.end; ++s) {
+            while (first < other.end && height[s] - height[first] > reach_) ++first;
+            for (std::uint32_t t = first; t < other.end && height[t] - height[s] < reach_; ++t) {
+                if (close(s, t)) visit(s, t);
+            }
+        }
+    }
+
+    PointColumns columns_;
+    float limit_;  // squared
+    float reach_;
+};
+
+// The same with indices of points.
+template <class Visit>
+void for_each_close_pair(const ClosePairs& pairs, const Visit& visit) {
+    const std::span<const std::uint32_t> order = pairs.columns().order();
+    pairs.for_each([&](std::uint32_t s, std::uint32_t t) { visit(order[s], order[t]); });
 }
 
 // Mean squared sine between each normal and those around it: 0 on a plane, large on a crease.
-std::vector<float> normal_variation(const PointCloud& cloud, double tolerance) {
+std::vector<float> normal_variation(const PointCloud& cloud, const ClosePairs& pairs) {
     std::vector<float> sum(cloud.size(), 0.0F);
     std::vector<float> count(cloud.size(), 0.0F);
-    for_each_close_pair(cloud.points, tolerance, [&](std::uint32_t i, std::uint32_t j) {
+    for_each_close_pair(pairs, [&](std::uint32_t i, std::uint32_t j) {
         const float cosine = cloud.normals[i].dot(cloud.normals[j]);
         const float variation = std::max(0.0F, 1.0F - cosine * cosine);
         sum[i] += variation;
@@ -83,23 +150,27 @@ std::vector<float> normal_variation(const PointCloud& cloud, double tolerance) {
 }  // namespace
 
 Clusters euclidean_clusters(std::span<const Vec3f> points, double tolerance, std::size_t min_size) {
-    DisjointSets sets(points.size());
-    for_each_close_pair(points, tolerance,
-                        [&](std::uint32_t i, std::uint32_t j) { sets.unite(i, j); });
-    return collect(sets, points.size(), min_size);
+    const ClosePairs pairs(points, tolerance);
+    DisjointSets slots(points.size());
+    pairs.for_each([&](std::uint32_t s, std::uint32_t t) { slots.unite(s, t); });
+    std::vector<std::uint32_t> slot_of(points.size());
+    for (std::uint32_t s = 0; s < points.size(); ++s) slot_of[pairs.columns().order()[s]] = s;
+    return collect(points.size(), min_size,
+                   [&](std::uint32_t i) { return slots.find(slot_of[i]); });
 }
 
 ProximityGraph proximity_graph(std::span<const Vec3f> points, double tolerance) {
+    const ClosePairs pairs(points, tolerance);
     ProximityGraph graph;
     graph.starts.assign(points.size() + 1, 0);
-    for_each_close_pair(points, tolerance, [&](std::uint32_t i, std::uint32_t j) {
+    for_each_close_pair(pairs, [&](std::uint32_t i, std::uint32_t j) {
         ++graph.starts[i + 1];
         ++graph.starts[j + 1];
     });
     std::partial_sum(graph.starts.begin(), graph.starts.end(), graph.starts.begin());
     graph.neighbors.resize(graph.starts.back());
     std::vector<std::uint32_t> next(graph.starts.begin(), graph.starts.end() - 1);
-    for_each_close_pair(points, tolerance, [&](std::uint32_t i, std::uint32_t j) {
+    for_each_close_pair(pairs, [&](std::uint32_t i, std::uint32_t j) {
         graph.neighbors[next[i]++] = j;
         graph.neighbors[next[j]++] = i;
     });
@@ -143,11 +214,12 @@ std::vector<std::uint32_t> largest_group(const ProximityGraph& graph,
 
 Clusters smooth_clusters(const PointCloud& cloud, const SmoothnessSettings& settings) {
     if (cloud.normals.size() != cloud.size()) throw InvalidInput("smooth clusters need normals");
-    const std::vector<float> variation = normal_variation(cloud, settings.tolerance);
+    const ClosePairs pairs(cloud.points, settings.tolerance);
+    const std::vector<float> variation = normal_variation(cloud, pairs);
     const auto crease = [&](std::uint32_t i) { return variation[i] > settings.max_curvature; };
     const auto min_cosine = static_cast<float>(std::cos(settings.max_angle));
     DisjointSets sets(cloud.size());
-    for_each_close_pair(cloud.points, settings.tolerance, [&](std::uint32_t i, std::uint32_t j) {
+    for_each_close_pair(pairs, [&](std::uint32_t i, std::uint32_t j) {
         if (crease(i) || crease(j)) return;
         if (cloud.normals[i].dot(cloud.normals[j]) > min_cosine) sets.unite(i, j);
     });
@@ -170,7 +242,7 @@ Clusters smooth_clusters(const PointCloud& cloud, const SmoothnessSettings& sett
     for (std::uint32_t i = 0; i < cloud.size(); ++i) {
         if (root[i] != kNoIndex) sets.unite(i, root[i]);
     }
-    return collect(sets, cloud.size(), settings.min_size);
+    return collect(cloud.size(), settings.min_size, [&](std::uint32_t i) { return sets.find(i); });
 }
 
 }  // namespace ostraka

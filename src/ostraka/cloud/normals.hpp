@@ -3,7 +3,6 @@
 // Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface Reconstruction from Unorganized Points. 1992.
 #pragma once
 
-#include "ostraka/cloud/kdtree.hpp"
 #include "ostraka/cloud/point_cloud.hpp"
 
 namespace ostraka {
@@ -21,10 +20,6 @@ struct NormalSettings {
 /// @return one unit vector per point; NaN where the neighborhood has no unique plane (fewer than 3
 ///         points, or all on a line).
 std::vector<Vec3f> estimate_normals(const PointCloud& cloud, const NormalSettings& settings = {});
-
-/// The same on a tree that exists already. @param tree over cloud.points.
-std::vector<Vec3f> estimate_normals(const PointCloud& cloud, const KdTree& tree,
-                                    const NormalSettings& settings = {});
 
 /// The same with all points closer than `radius` instead of a number of neighbors: several times
 /// faster, and as good on a cloud of even density (see resample()).

@@ -4,10 +4,10 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "ostraka/base/types.hpp"
+#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 
@@ -15,32 +15,54 @@ namespace ostraka {
 struct Star {
     static constexpr std::size_t kLargest = 16;
 
-    std::array<std::uint32_t, kLargest> neighbors{};
-    std::uint8_t count = 0;
-    bool closed = false;  ///< the last and the first neighbor make a triangle, too
+    Star() { neighbors.fill(kNoIndex); }
+
+    /// Of a closed star the first one is repeated after the last; then kNoIndex.
+    std::array<std::uint32_t, kLargest + 1> neighbors;
+    std::uint8_t triangles = 0;
     float nearest =
         0.0F;  ///< distance of the nearest neighbor in the plane, in search radii; 0 if none
-
-    /// Whether there is a triangle with neighbor b after neighbor a.
-    bool holds(std::uint32_t a, std::uint32_t b) const;
 };
 
-/// Candidates for the stars of all points of a cell, as columns.
-struct Nearby {
-    std::vector<float> x, y, z, nx, ny, nz, weight;
-    std::vector<std::uint32_t> index;
+/// Whether the star has a triangle with neighbor b after neighbor a. Without branches.
+__attribute__((always_inline)) inline bool holds(const Star& star, std::uint32_t a,
+                                                 std::uint32_t b) {
+    static_assert(Star::kLargest == 2 * kVectorLanes);
+    Word8 first;
+    Word8 second;
+    load8(star.neighbors.data(), first);
+    load8(star.neighbors.data() + 1, second);
+    Int8 found = (first == a) & (second == b);
+    load8(star.neighbors.data() + kVectorLanes, first);
+    load8(star.neighbors.data() + kVectorLanes + 1, second);
+    found |= (first == a) & (second == b);
+    std::uint64_t pairs[4];
+    std::memcpy(&pairs, &found, sizeof(pairs));
+    return (pairs[0] | pairs[1] | pairs[2] | pairs[3]) != 0;
+}
 
-    void clear();
-    void add(const Vec3f& point, const Vec3f& normal, float point_weight, std::uint32_t i);
-    std::size_t size() const { return index.size(); }
+/// Points with normals as columns, padded for vectors that read beyond the end.
+struct StarPoints {
+    std::array<std::vector<float>, 7> columns;  ///< x, y, z, normal x, y, z, weight
+    std::vector<std::uint32_t> index;           ///< what stars call the points
+    std::size_t count = 0;
+
+    void resize(std::size_t points);
+    Vec3f position(std::size_t i) const { return {columns[0][i], columns[1][i], columns[2][i]}; }
+    Vec3f normal(std::size_t i) const { return {columns[3][i], columns[4][i], columns[5][i]}; }
+    void set(std::size_t at, const Vec3f& point, const Vec3f& normal, std::uint32_t i);
 };
+
+/// Appends to `found` the points in [first, end) that are closer than the radius to a box.
+void append_near_box(const StarPoints& points, std::size_t first, std::size_t end, const Vec3f& low,
+                     const Vec3f& high, float radius, std::vector<std::uint32_t>& list,
+                     StarPoints& found);
 
 /// Memory that stars share.
 struct StarScratch {
-    std::vector<float> u, v, squared;  // of all candidates
-    std::vector<std::int32_t> usable;
-    std::vector<float> flat_u, flat_v, flat_squared;  // of those in the star's reach
-    std::vector<std::uint32_t> flat_index;
+    std::vector<float> all_u, all_v, all_squared;  // of the nearby points, in the tangent plane
+    std::vector<std::uint32_t> list;               // positions of those in the star's reach
+    std::vector<float> u, v, squared;              // of these
     std::size_t count = 0;
 };
 
@@ -49,8 +71,8 @@ struct StarScratch {
 /// the same way in every star.
 float star_weight(const Vec3f& point);
 
-/// @param radius  candidates farther away are ignored.
-Star delaunay_star(const Vec3f& point, const Vec3f& normal, float radius, const Nearby& nearby,
+/// @param radius  points farther away from it are ignored.
+Star delaunay_star(const StarPoints& nearby, const Vec3f& point, const Vec3f& normal, float radius,
                    StarScratch& scratch);
 
 }  // namespace ostraka

@@ -3,7 +3,7 @@
 // Wohlkinger, Vincze. Ensemble of Shape Functions for 3D Object Classification. ROBIO 2011.
 // Follows PCL 1.13 where it departs from the paper: three vertices give three angles, each weighted
 // by the traced length of the opposite side; distances on the surface fill the block named "in".
-// Departs from PCL: the triples come from a seed, not from the clock, and are drawn without
+// Departs from PCL: the triples come from a hash of a seed, not from the clock, drawn without
 // rejecting repeated indices (same distribution); the work is bounded where no triangle exists.
 #pragma once
 

@@ -26,6 +26,8 @@ class TermRounder {
         shift_ = std::ldexp(1.5, count_exponent + term_exponent);
     }
     double operator()(double term) const { return (term + shift_) - shift_; }
+    /// For vectors: (term + shift()) - shift() is the rounded term.
+    double shift() const { return shift_; }
 
   private:
     double shift_;

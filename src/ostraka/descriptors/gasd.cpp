@@ -8,6 +8,7 @@
 
 #include "ostraka/descriptors/checks.hpp"
 #include "ostraka/descriptors/exact_sum.hpp"
+#include "ostraka/descriptors/gasd_aligned.hpp"
 #include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
@@ -108,26 +109,6 @@ void scatter_block(const Columns& c, std::size_t count, const TermRounder& round
     }
 }
 
-// The points in the aligned frame, and the extents that scale the grid.
-Scale align(const PointCloud& cloud, const GasdFrame& frame, std::vector<Vec3f>& aligned) {
-    const Mat3d& R = frame.R_aligned_cloud;
-    aligned.resize(cloud.size());
-    float farthest = 0.0F;
-    float largest = 0.0F;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        const double dx = cloud.points[i].x() - frame.centroid.x();
-        const double dy = cloud.points[i].y() - frame.centroid.y();
-        const double dz = cloud.points[i].z() - frame.centroid.z();
-        const auto x = static_cast<float>(R(0, 0) * dx + R(0, 1) * dy + R(0, 2) * dz);
-        const auto y = static_cast<float>(R(1, 0) * dx + R(1, 1) * dy + R(1, 2) * dz);
-        const auto z = static_cast<float>(R(2, 0) * dx + R(2, 1) * dy + R(2, 2) * dz);
-        aligned[i] = Vec3f(x, y, z);
-        farthest = std::max(farthest, (x * x + z * z) + y * y);
-        largest = std::max({largest, std::abs(x), std::abs(y), std::abs(z)});
-    }
-    return {std::sqrt(farthest), largest, true};
-}
-
 // Sum of x^3 and of |x|^3 along an axis, the same for any order of the points.
 std::pair<double, double> third_moment(const PointCloud& cloud, const Vec3d& centroid,
                                        const Vec3d& axis) {
@@ -185,9 +166,8 @@ std::vector<float> describe_gasd(const PointCloud& cloud, const GasdFrame& frame
                                  const GasdSettings& settings) {
     require_points(cloud, "gasd");
     std::vector<float> row(kGasdLength, 0.0F);
-    std::vector<Vec3f> aligned;
-    Scale scale = align(cloud, frame, aligned);
-    scale.outer_half_only = settings.outer_half_only;
+    const AlignedPoints aligned = align(cloud, frame);
+    const Scale scale{aligned.farthest, aligned.largest, settings.outer_half_only};
     if (!(scale.farthest > 0.0F) || cloud.size() < 2) return row;
     const TermRounder rounded(cloud.size(), 1.0);
     Cells cells{};
@@ -195,9 +175,9 @@ std::vector<float> describe_gasd(const PointCloud& cloud, const GasdFrame& frame
     for (std::size_t first = 0; first < cloud.size(); first += kBlock) {
         const std::size_t count = std::min(kBlock, cloud.size() - first);
         for (std::size_t i = 0; i < count; ++i) {
-            columns.x[i] = aligned[first + i].x();
-            columns.y[i] = aligned[first + i].y();
-            columns.z[i] = aligned[first + i].z();
+            columns.x[i] = aligned.points[first + i].x();
+            columns.y[i] = aligned.points[first + i].y();
+            columns.z[i] = aligned.points[first + i].z();
         }
         place_block(scale, columns, count);
         scatter_block(columns, count, rounded, cells);

@@ -11,7 +11,8 @@ namespace ostraka {
 struct LocalDescriptors {
     std::vector<float> rows;    ///< keypoints x length, row-major; finite; all 0 where undefined
     std::vector<Mat3f> frames;  ///< R_local_cloud of each keypoint: rows are its x, y and z axis in
-                                ///< the cloud's frame, right-handed; NaN where undefined
+                                ///< the cloud's frame, right-handed; NaN where undefined. Empty
+                                ///< for descriptors without a frame (PFH, FPFH, spin images)
 };
 
 }  // namespace ostraka

@@ -3,6 +3,7 @@
 
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/descriptors/checks.hpp"
+#include "ostraka/descriptors/neighborhoods.hpp"
 #include "ostraka/descriptors/rops_frame.hpp"
 #include "ostraka/descriptors/rops_statistics.hpp"
 #include "ostraka/descriptors/support.hpp"
@@ -22,35 +23,37 @@ void require_triangles(std::span<const IndexTriangle> triangles, std::size_t poi
 
 }  // namespace
 
-LocalDescriptors describe_rops(const PointCloud& cloud, const KdTree& tree,
-                               std::span<const IndexTriangle> triangles,
+LocalDescriptors describe_rops(const PointCloud& cloud, std::span<const IndexTriangle> triangles,
                                std::span<const Vec3f> keypoints, const RopsSettings& settings) {
-    check(cloud);
-    require_support(cloud, tree, keypoints, settings.radius, "rops");
+    require_search(cloud, keypoints, settings.radius, "rops");
     require_triangles(triangles, cloud.size());
-    const RopsSurface surface(cloud.points, triangles);
     LocalDescriptors result;
     result.rows.assign(keypoints.size() * kRopsLength, 0.0F);
-    result.frames.resize(keypoints.size());
+    result.frames.assign(keypoints.size(), no_frame());
+    if (cloud.empty() || keypoints.empty()) return result;
+    const RopsSurface surface(cloud.points, triangles, settings.radius);
+    const Neighborhoods neighborhoods(cloud, settings.radius, false);
     const std::size_t chunks = (keypoints.size() + kChunk - 1) / kChunk;
     parallel_for(chunks, [&](std::size_t chunk) {
         Support support;
         RopsScratch scratch;
-        TriangleMarks marks(triangles.size());
-        std::vector<Neighbor> neighbors;
         const std::size_t end = std::min(keypoints.size(), (chunk + 1) * kChunk);
         for (std::size_t k = chunk * kChunk; k < end; ++k) {
-            tree.within(keypoints[k], settings.radius, neighbors);
-            result.frames[k] = surface.local_frame(keypoints[k], settings.radius, neighbors, marks);
+            result.frames[k] = surface.local_frame(keypoints[k]);
             if (!result.frames[k].allFinite()) continue;
-            gather(
-                cloud, keypoints[k], neighbors.size(), false,
-                [&](std::size_t i) { return neighbors[i].index; }, support);
+            neighborhoods.find(keypoints[k], support);
             const std::span<float> row(result.rows.data() + k * kRopsLength, kRopsLength);
             rops_statistics(support, result.frames[k], scratch, row);
         }
     });
     return result;
+}
+
+LocalDescriptors describe_rops(const PointCloud& cloud, const KdTree& tree,
+                               std::span<const IndexTriangle> triangles,
+                               std::span<const Vec3f> keypoints, const RopsSettings& settings) {
+    require_support(cloud, tree, keypoints, settings.radius, "rops");
+    return describe_rops(cloud, triangles, keypoints, settings);
 }
 
 std::vector<float> describe_global_rops(const PointCloud& cloud,

@@ -29,14 +29,19 @@ struct GlobalRopsSettings {
 };
 
 /// @param cloud  finite points; normals unused.
-/// @param tree  over cloud.points.
 /// @param triangles  of the surface, indices into cloud.points, as from triangulate() or a mesh.
 /// @param keypoints  finite, in the cloud's frame; need not be points of the cloud.
 /// @return rows of kRopsLength floats, L1 norm 1. A keypoint whose support holds no triangle of
 ///         positive area has no frame and a row of 0. Any number of threads gives the same bits; a
 ///         rigid motion may move single points into another bin.
-/// @throws InvalidInput if the tree's size differs, an index is out of range or the radius is not
-///         positive.
+/// @throws InvalidInput if a point or keypoint is not finite, an index is out of range or the
+/// radius
+///         is not positive.
+LocalDescriptors describe_rops(const PointCloud& cloud, std::span<const IndexTriangle> triangles,
+                               std::span<const Vec3f> keypoints, const RopsSettings& settings);
+
+/// The same, for callers that hold a tree over cloud.points. It doesn't speed up the search.
+/// @throws InvalidInput also if the tree's size differs.
 LocalDescriptors describe_rops(const PointCloud& cloud, const KdTree& tree,
                                std::span<const IndexTriangle> triangles,
                                std::span<const Vec3f> keypoints, const RopsSettings& settings);

@@ -5,50 +5,43 @@
 #include <span>
 #include <vector>
 
-#include "ostraka/cloud/kdtree.hpp"
+#include "ostraka/descriptors/cell_order.hpp"
 #include "ostraka/descriptors/triangulation.hpp"
 
 namespace ostraka {
 
-/// What a triangle adds to a frame, independent of the keypoint.
-struct TriangleMoments {
-    Vec3d center;  ///< mean of the corners
-    double area;   ///< twice the area
-    /// sum of (corner - center)(corner - center)^T: xx, xy, xz, yy, yz, zz
-    std::array<double, 6> spread;
+/// What triangles add to a frame, independent of the keypoint, as columns; and their corners.
+/// Columns are padded, so that vectors may read beyond their end.
+struct TriangleColumns {
+    TriangleColumns(std::size_t triangles, bool with_corners);
+    void set(std::size_t at, std::span<const Vec3f> points, const IndexTriangle& triangle);
+
+    std::vector<double> x, y, z;                // mean of the corners
+    std::vector<double> area;                   // twice the area
+    std::array<std::vector<double>, 6> spread;  // sum of (corner - mean)(corner - mean)^T: xx, xy,
+                                                // xz, yy, yz, zz
+    std::array<std::vector<float>, 9> corner;   // x, y, z of the first, second and third; or empty
 };
 
-/// Which triangles a keypoint has met already.
-class TriangleMarks {
-  public:
-    explicit TriangleMarks(std::size_t triangles) : marks_(triangles, 0) {}
-    void start() { ++round_; }
-    /// Whether this is the first time since start().
-    bool first_time(std::uint32_t triangle) {
-        const bool first = marks_[triangle] != round_;
-        marks_[triangle] = round_;
-        return first;
-    }
-
-  private:
-    std::vector<std::uint32_t> marks_;
-    std::uint32_t round_ = 0;
-};
-
-/// A triangulated cloud, prepared for many keypoints. The points must outlive it.
+/// A triangulated cloud, prepared for many keypoints.
 class RopsSurface {
   public:
-    RopsSurface(std::span<const Vec3f> points, std::span<const IndexTriangle> triangles);
+    /// @param radius  of the supports.
+    RopsSurface(std::span<const Vec3f> points, std::span<const IndexTriangle> triangles,
+                float radius);
 
-    /// The frame from all triangles with a corner among the neighbors.
+    /// The frame from all triangles with a corner closer to the keypoint than the radius.
     /// @return R_local_cloud; NaN if they have no area.
-    Mat3f local_frame(const Vec3f& keypoint, float radius, std::span<const Neighbor> neighbors,
-                      TriangleMarks& marks) const;
+    Mat3f local_frame(const Vec3f& keypoint) const;
 
   private:
-    std::vector<TriangleMoments> moments_;
-    std::vector<std::uint32_t> starts_;     // points + 1 offsets into triangles_
-    std::vector<std::uint32_t> triangles_;  // of each point
+    RopsSurface(std::span<const Vec3f> points, std::span<const IndexTriangle> triangles,
+                float radius, std::span<const Vec3f> centers);
+
+    float radius_;
+    float longest_arm_ = 0.0F;  // from a triangle's mean to its corner
+    CellOrder order_;           // of the means
+    TriangleColumns columns_;   // in that order
 };
 
 /// The frame from all triangles.

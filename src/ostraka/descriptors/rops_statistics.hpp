@@ -11,9 +11,9 @@ namespace ostraka {
 
 /// Memory that keypoints share.
 struct RopsScratch {
-    std::vector<float> x, y, z;      // the points in the local frame
-    std::vector<float> u, v;         // two coordinates, rotated
-    std::vector<std::int32_t> cell;  // of each point, in a grid of 5 x 5 x 5
+    std::vector<float> x, y, z;       // the points in the local frame
+    std::vector<float> u, v;          // two coordinates, rotated
+    std::vector<std::uint16_t> cell;  // of each point, in a grid of 5 x 5 x 5
 };
 
 /// @param row  135 floats, replaced; L1 norm 1, or all 0 for an empty support.

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A point of a support costs 28 bytes and about 180 operations, of which 160 are vectorized by
+// eight and 10 are scattered additions: a floor of about 20 cycles. Measured, with the search and
+// the frame: three to four times that.
 #include "ostraka/descriptors/shot.hpp"
 
 #include <array>
@@ -7,6 +10,7 @@
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/descriptors/checks.hpp"
 #include "ostraka/descriptors/fast_math.hpp"
+#include "ostraka/descriptors/neighborhoods.hpp"
 #include "ostraka/descriptors/shot_frame.hpp"
 #include "ostraka/descriptors/support.hpp"
 #include "ostraka/descriptors/vector_clones.hpp"
@@ -171,29 +175,32 @@ Mat3f describe_support(const Support& support, float radius, std::span<float> ro
 
 }  // namespace
 
-LocalDescriptors describe_shot(const PointCloud& cloud, const KdTree& tree,
-                               std::span<const Vec3f> keypoints, const ShotSettings& settings) {
-    check(cloud);
-    require_support(cloud, tree, keypoints, settings.radius, "shot");
+LocalDescriptors describe_shot(const PointCloud& cloud, std::span<const Vec3f> keypoints,
+                               const ShotSettings& settings) {
+    require_search(cloud, keypoints, settings.radius, "shot");
     if (!cloud.empty()) require_normals(cloud, "shot");
     LocalDescriptors result;
     result.rows.assign(keypoints.size() * kShotLength, 0.0F);
-    result.frames.resize(keypoints.size());
+    result.frames.assign(keypoints.size(), no_frame());
+    if (cloud.empty() || keypoints.empty()) return result;
+    const Neighborhoods neighborhoods(cloud, settings.radius, true);
     const std::size_t chunks = (keypoints.size() + kChunk - 1) / kChunk;
     parallel_for(chunks, [&](std::size_t chunk) {
         Support support;
-        std::vector<Neighbor> neighbors;
         const std::size_t end = std::min(keypoints.size(), (chunk + 1) * kChunk);
         for (std::size_t k = chunk * kChunk; k < end; ++k) {
-            tree.within(keypoints[k], settings.radius, neighbors);
-            gather(
-                cloud, keypoints[k], neighbors.size(), true,
-                [&](std::size_t i) { return neighbors[i].index; }, support);
+            neighborhoods.find(keypoints[k], support);
             const std::span<float> row(result.rows.data() + k * kShotLength, kShotLength);
             result.frames[k] = describe_support(support, settings.radius, row);
         }
     });
     return result;
+}
+
+LocalDescriptors describe_shot(const PointCloud& cloud, const KdTree& tree,
+                               std::span<const Vec3f> keypoints, const ShotSettings& settings) {
+    require_support(cloud, tree, keypoints, settings.radius, "shot");
+    return describe_shot(cloud, keypoints, settings);
 }
 
 std::vector<float> describe_global_shot(const PointCloud& cloud,

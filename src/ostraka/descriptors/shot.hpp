@@ -26,13 +26,17 @@ struct ShotSettings {
 struct GlobalShotSettings {};
 
 /// @param cloud  finite points with unit normals; a NaN normal's point is used for the frame only.
-/// @param tree  over cloud.points.
 /// @param keypoints  finite, in the cloud's frame; need not be points of the cloud.
 /// @return rows of kShotLength floats, non-negative, L2 norm 1. A keypoint with fewer than 5 points
 ///         (other than itself) in its support has no frame and a row of 0. The same for any order
 ///         of the points and any number of threads; up to rounding for any rigid motion.
-/// @throws InvalidInput if normals are missing, the tree's size differs, or the radius is not
-///         positive.
+/// @throws InvalidInput if normals are missing, a point or keypoint is not finite, or the radius is
+///         not positive.
+LocalDescriptors describe_shot(const PointCloud& cloud, std::span<const Vec3f> keypoints,
+                               const ShotSettings& settings);
+
+/// The same, for callers that hold a tree over cloud.points. It doesn't speed up the search.
+/// @throws InvalidInput also if the tree's size differs.
 LocalDescriptors describe_shot(const PointCloud& cloud, const KdTree& tree,
                                std::span<const Vec3f> keypoints, const ShotSettings& settings);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,9 +16,10 @@ namespace ostraka {
 
 struct Support {
     std::size_t count = 0;
-    std::vector<float> x, y, z;     // offset from the keypoint, cloud's axes and unit
-    std::vector<float> distance;    // length of the offset
-    std::vector<float> nx, ny, nz;  // normals; empty if not asked for
+    std::vector<float> x, y, z;       // offset from the keypoint, cloud's axes and unit
+    std::vector<float> distance;      // length of the offset
+    std::vector<float> nx, ny, nz;    // normals; empty if not asked for
+    std::vector<std::uint32_t> list;  // memory of searches
 
     void resize(std::size_t points, bool with_normals) {
         count = points;
@@ -52,6 +54,11 @@ void gather(const PointCloud& cloud, const Vec3f& keypoint, std::size_t count, b
         support.ny[i] = normal.y();
         support.nz[i] = normal.z();
     }
+}
+
+/// The frame of a keypoint without one.
+inline Mat3f no_frame() {
+    return Mat3f::Constant(std::numeric_limits<float>::quiet_NaN());
 }
 
 /// Center and radius of a whole piece as support.

@@ -1,143 +1,241 @@
 // SPDX-License-Identifier: Apache-2.0
+// Eight lines of nearly the same length are traced side by side; where they are of one length, no
+// lane is idle. Floor: eight voxels need a gather (5 to 6 cycles) and 15 other vector operations,
+// at three a cycle, which overlap with it; ESF's 60,000 lines of 17 voxels are then 0.25 ms at 3
+// GHz. Measured: about 0.5 ms with setting up and sorting the lines.
 #include "ostraka/descriptors/voxel_lines.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <cstring>
 
 #include "ostraka/descriptors/vector_clones.hpp"
+#if OSTRAKA_HAS_AVX2_CLONES
+#include <immintrin.h>
+#endif
 
 namespace ostraka {
 namespace {
 
-constexpr int kFraction = 15;
-constexpr std::array<int, 3> kShift = {0, 21, 43};
-constexpr std::size_t kLanes = 8;
-// 1 / length
-constexpr std::array<float, kVoxels + 1> kInverse = [] {
-    std::array<float, kVoxels + 1> inverse{};
-    inverse[0] = 1.0F;
-    for (std::size_t l = 1; l <= kVoxels; ++l) inverse[l] = 1.0F / static_cast<float>(l);
-    return inverse;
-}();
+constexpr std::size_t kLines = 1536;  // traced together: their data and the grid fit the L1 cache
+constexpr int kFraction = 26;         // bits after the point of a coordinate
+constexpr float kOne = 1U << kFraction;
 
-using Word4 = std::uint64_t __attribute__((vector_size(32)));
-
-// Lines of nearly the same length, side by side.
-struct Lanes {
-    std::array<std::uint64_t, kLanes> position, step, length, inside;
+// to[lane] = table[at[lane]].
+struct PlainGather {
+    __attribute__((always_inline)) static void load(const std::uint32_t* table, const Word8& at,
+                                                    Word8& to) {
+        to = Word8{table[at[0]], table[at[1]], table[at[2]], table[at[3]],
+                   table[at[4]], table[at[5]], table[at[6]], table[at[7]]};
+    }
 };
 
-__attribute__((always_inline)) inline void load4(const std::uint64_t* from, Word4& to) {
-    std::memcpy(&to, from, sizeof(to));
-}
-
-// Adds to `inside` the voxels at `p`, one a lane.
-__attribute__((always_inline)) inline void look_up(const std::uint64_t* words, const Word4& p,
-                                                   const Word4& counts, Word4& inside) {
-    const Word4 at = (p >> (kFraction - 6) & 0xfc0U) | (p >> (kShift[1] + kFraction) & 0x3fU);
-    const Word4 word = {words[at[0]], words[at[1]], words[at[2]], words[at[3]]};
-    inside += word >> (p >> (kShift[2] + kFraction)) & counts;
-}
-
-OSTRAKA_VECTOR_CLONES
-void trace_lanes(const std::uint64_t* words, Lanes& lanes, std::uint64_t steps) {
-    Word4 p;
-    Word4 q;
-    Word4 p_step;
-    Word4 q_step;
-    Word4 p_length;
-    Word4 q_length;
-    load4(lanes.position.data(), p);
-    load4(lanes.position.data() + 4, q);
-    load4(lanes.step.data(), p_step);
-    load4(lanes.step.data() + 4, q_step);
-    load4(lanes.length.data(), p_length);
-    load4(lanes.length.data() + 4, q_length);
-    Word4 p_inside = {};
-    Word4 q_inside = {};
-    for (std::uint64_t k = 0; k < steps; ++k) {
-        // A lane counts until its line ends; beyond, it may read any word, but none outside the
-        // grid.
-        const Word4 now = Word4{} + k;
-        look_up(words, p, p_length > now ? Word4{} + 1 : Word4{}, p_inside);
-        look_up(words, q, q_length > now ? Word4{} + 1 : Word4{}, q_inside);
-        p += p_step;
-        q += q_step;
+#if OSTRAKA_HAS_AVX2_CLONES
+// The builtin instead of the intrinsic, so that functions without a target may be inlined into the
+// clone together with it; none of them passes vectors between functions.
+#pragma GCC diagnostic ignored "-Wpsabi"
+struct Avx2Gather {
+    __attribute__((always_inline)) static void load(const std::uint32_t* table, const Word8& at,
+                                                    Word8& to) {
+        const Int8 index = __builtin_convertvector(at, Int8);
+        const Int8 words = __builtin_ia32_gathersiv8si(Int8{}, reinterpret_cast<const int*>(table),
+                                                       index, Int8{} - 1, sizeof(int));
+        to = __builtin_convertvector(words, Word8);
     }
-    std::memcpy(lanes.inside.data(), &p_inside, sizeof(p_inside));
-    std::memcpy(lanes.inside.data() + 4, &q_inside, sizeof(q_inside));
-}
+};
+#endif
 
-// Line numbers in ascending order of length.
-std::vector<std::uint32_t> by_length(std::span<const VoxelLine> lines) {
-    std::array<std::uint32_t, kVoxels + 2> starts{};
-    for (const VoxelLine& line : lines) ++starts[static_cast<std::size_t>(line.length) + 1];
-    for (std::size_t l = 1; l < starts.size(); ++l) starts[l] += starts[l - 1];
-    std::vector<std::uint32_t> order(lines.size());
-    for (std::uint32_t i = 0; i < lines.size(); ++i) {
-        order[starts[static_cast<std::size_t>(lines[i].length)]++] = i;
-    }
-    return order;
-}
+// A coordinate of eight lines, as fixed point with 6 bits before the point; beyond their ends lines
+// wrap around, so that they never leave the grid.
+struct Axis {
+    Word8 at, step;
+};
 
-}  // namespace
-
-void VoxelGrid::add_dilated(int x, int y, int z) {
-    const std::uint64_t run = z > 0 ? std::uint64_t{7} << (z - 1) : std::uint64_t{3};
-    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, kVoxels - 1); ++i) {
-        for (int j = std::max(y - 1, 0); j <= std::min(y + 1, kVoxels - 1); ++j) {
-            words_[static_cast<std::size_t>(i * kVoxels + j)] |= run;
-        }
-    }
+__attribute__((always_inline)) inline void magnitude(const Int8& value, Int8& result) {
+    result = value < 0 ? -value : value;
 }
 
 // After k of l steps with difference d, Bresenham's line has moved by floor((2dk + l - 1) / 2l)
 // along an axis, backwards by as much for a negative d. That is floor(k * d / l + c), with c = (l -
 // 1) / 2l forwards and 1/2 backwards. The values are multiples of 1 / 2l >= 1/128; the added 1/256
-// keeps them off the steps of the floor, beyond the error of the fixed-point step (64 * 2^-15 =
-// 1/512).
-VoxelLine voxel_line(const std::array<std::int32_t, 3>& from,
-                     const std::array<std::int32_t, 3>& to) {
-    constexpr float kOne = 1 << kFraction;
-    VoxelLine line;
-    const std::int32_t dx = to[0] - from[0];
-    const std::int32_t dy = to[1] - from[1];
-    const std::int32_t dz = to[2] - from[2];
-    line.length = std::max({std::abs(dx), std::abs(dy), std::abs(dz), 1});
-    const float scale = kOne * kInverse[static_cast<std::size_t>(line.length)];
-    const auto forward =
-        static_cast<std::int64_t>(0.5F * kOne - 0.5F * scale) + (1 << (kFraction - 8));
-    const std::int64_t backward = (1 << (kFraction - 1)) + (1 << (kFraction - 8));
-    const auto add_axis = [&](std::int32_t start, std::int32_t d, int shift) {
-        const std::int64_t position =
-            (std::int64_t{start} << kFraction) + (d < 0 ? backward : forward);
-        const auto step = static_cast<std::int64_t>(static_cast<float>(d) * scale);
-        line.start += static_cast<std::uint64_t>(position) << shift;
-        line.step += static_cast<std::uint64_t>(step) << shift;
-    };
-    add_axis(from[0], dx, kShift[0]);
-    add_axis(from[1], dy, kShift[1]);
-    add_axis(from[2], dz, kShift[2]);
-    return line;
+// keeps them off the steps of the floor, beyond the error of a float's step (64 * 2^-24).
+__attribute__((always_inline)) inline void set_axis(const Word8& from, const Int8& difference,
+                                                    const Float8& scale, Axis& axis) {
+    const Int8 forward = __builtin_convertvector(0.5F * kOne - 0.5F * scale, Int8);
+    const Int8 backward = Int8{} + (1 << (kFraction - 1));
+    const Int8 offset = (difference < 0 ? backward : forward) + (1 << (kFraction - 8));
+    const Int8 step =
+        __builtin_convertvector(__builtin_convertvector(difference, Float8) * scale, Int8);
+    axis.at = (from << kFraction) + __builtin_convertvector(offset, Word8);
+    axis.step = __builtin_convertvector(step, Word8);
 }
 
-void trace_lines(const VoxelGrid& grid, std::span<const VoxelLine> lines,
-                 std::span<std::int32_t> inside) {
-    const std::vector<std::uint32_t> order = by_length(lines);
-    Lanes lanes{};
-    for (std::size_t first = 0; first < order.size(); first += kLanes) {
-        const std::size_t count = std::min(kLanes, order.size() - first);
-        for (std::size_t lane = 0; lane < count; ++lane) {
-            const VoxelLine& line = lines[order[first + lane]];
-            lanes.position[lane] = line.start;
-            lanes.step[lane] = line.step;
-            lanes.length[lane] = static_cast<std::uint64_t>(line.length);
+// The bits at the current voxels, lowest in each lane; moves on.
+template <class Gather>
+__attribute__((always_inline)) inline void look_up(const std::uint32_t* words, Axis& x, Axis& y,
+                                                   Axis& z, Word8& found) {
+    const Word8 at =
+        (x.at >> (kFraction - 7) & 0x1f80U) | (y.at >> (kFraction - 1) & 0x7eU) | z.at >> 31;
+    Word8 word;
+    Gather::load(words, at, word);
+    found = word >> (z.at >> kFraction & 31U) & 1U;
+    x.at += x.step;
+    y.at += y.step;
+    z.at += z.step;
+}
+
+struct Block {
+    const std::uint32_t *from, *to;  // packed voxels
+    const std::uint8_t* length;
+    const std::uint32_t* order;  // line numbers, shorter lines first, a multiple of eight
+    std::size_t count;           // of the order
+    std::uint8_t* inside;
+};
+
+template <class Gather>
+__attribute__((always_inline)) inline void trace_block(const std::uint32_t* words,
+                                                       const Block& block) {
+    for (std::size_t first = 0; first < block.count; first += kVectorLanes) {
+        const std::uint32_t* order = block.order + first;
+        Word8 lines;
+        Word8 from;
+        Word8 to;
+        load8(order, lines);
+        Gather::load(block.from, lines, from);
+        Gather::load(block.to, lines, to);
+        const Word8 fx = from & 63U;
+        const Word8 fy = from >> 8 & 63U;
+        const Word8 fz = from >> 16;
+        const Int8 dx = __builtin_convertvector((to & 63U) - fx, Int8);
+        const Int8 dy = __builtin_convertvector((to >> 8 & 63U) - fy, Int8);
+        const Int8 dz = __builtin_convertvector((to >> 16) - fz, Int8);
+        Int8 length;
+        Int8 other;
+        magnitude(dx, length);
+        magnitude(dy, other);
+        length = length > other ? length : other;
+        magnitude(dz, other);
+        length = length > other ? length : other;
+        length = length > 1 ? length : Int8{} + 1;
+        const Float8 scale = kOne / __builtin_convertvector(length, Float8);
+        Axis x;
+        Axis y;
+        Axis z;
+        set_axis(fx, dx, scale, x);
+        set_axis(fy, dy, scale, y);
+        set_axis(fz, dz, scale, z);
+        const std::int32_t shortest = block.length[order[0]];
+        const std::int32_t longest = block.length[order[kVectorLanes - 1]];
+        Word8 inside = {};
+        Word8 found;
+        for (std::int32_t k = 0; k < shortest; ++k) {
+            look_up<Gather>(words, x, y, z, found);
+            inside += found;
         }
-        trace_lanes(grid.words(), lanes, lanes.length[count - 1]);
-        for (std::size_t lane = 0; lane < count; ++lane) {
-            inside[order[first + lane]] = static_cast<std::int32_t>(lanes.inside[lane]);
+        for (std::int32_t k = shortest; k < longest; ++k) {
+            look_up<Gather>(words, x, y, z, found);
+            const Int8 running = length > k;
+            inside += found & __builtin_convertvector(running, Word8);
         }
+        for (std::size_t lane = 0; lane < kVectorLanes; ++lane) {
+            block.inside[order[lane]] = static_cast<std::uint8_t>(inside[lane]);
+        }
+    }
+}
+
+OSTRAKA_DEFAULT_CLONE
+void trace(const std::uint32_t* words, const Block& block) {
+    trace_block<PlainGather>(words, block);
+}
+#if OSTRAKA_HAS_AVX2_CLONES
+OSTRAKA_AVX2_CLONE
+void trace(const std::uint32_t* words, const Block& block) {
+    trace_block<Avx2Gather>(words, block);
+}
+#endif
+
+OSTRAKA_VECTOR_CLONES
+void measure(const std::uint32_t* from, const std::uint32_t* to, std::size_t count,
+             std::uint8_t* length) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto f = static_cast<std::int32_t>(from[i]);
+        const auto t = static_cast<std::int32_t>(to[i]);
+        const std::int32_t x = (t & 63) - (f & 63);
+        const std::int32_t y = (t >> 8 & 63) - (f >> 8 & 63);
+        const std::int32_t z = (t >> 16) - (f >> 16);
+        const std::int32_t ax = x < 0 ? -x : x;
+        const std::int32_t ay = y < 0 ? -y : y;
+        const std::int32_t az = z < 0 ? -z : z;
+        const std::int32_t xy = ax > ay ? ax : ay;
+        const std::int32_t xyz = xy > az ? xy : az;
+        length[i] = static_cast<std::uint8_t>(xyz > 1 ? xyz : 1);
+    }
+}
+
+using Order = std::array<std::uint32_t, kLines + kVectorLanes>;
+
+// Line numbers in ascending order of length, the last one repeated up to a multiple of eight.
+std::size_t sort_by_length(const std::uint8_t* length, std::size_t count, Order& order) {
+    std::array<std::uint32_t, kVoxels + 1> next{};
+    for (std::size_t i = 0; i < count; ++i) ++next[length[i]];
+    std::uint32_t before = 0;
+    for (std::uint32_t& n : next) {
+        const std::uint32_t lines = n;
+        n = before;
+        before += lines;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) order[next[length[i]]++] = i;
+    std::size_t padded = count;
+    for (; padded % kVectorLanes != 0; ++padded) order[padded] = order[count - 1];
+    return padded;
+}
+
+// ORs `words` words of `from`, from `second` on, into `to`, from `first` on.
+void merge_rows(const std::vector<std::uint64_t>& from, std::size_t first, std::size_t second,
+                std::size_t words, std::vector<std::uint64_t>& to) {
+    for (std::size_t i = 0; i < words; ++i) to[first + i] |= from[second + i];
+}
+
+}  // namespace
+
+void VoxelGrid::set(std::uint32_t voxel) {
+    const std::uint32_t x = voxel & 63U;
+    const std::uint32_t y = voxel >> 8U & 63U;
+    const std::uint32_t z = voxel >> 16U;
+    words_[x * 2 * kVoxels + y * 2 + (z >> 5U)] |= 1U << (z & 31U);
+}
+
+void VoxelGrid::dilate() {
+    constexpr std::size_t kRow = kVoxels;
+    constexpr std::size_t kAll = kRow * kRow;
+    std::vector<std::uint64_t> along_z(kAll);
+    for (std::size_t i = 0; i < kAll; ++i) {
+        const std::uint64_t bits = words_[2 * i] | std::uint64_t{words_[2 * i + 1]} << 32U;
+        along_z[i] = bits | bits << 1U | bits >> 1U;
+    }
+    std::vector<std::uint64_t> along_y = along_z;
+    for (std::size_t x = 0; x < kAll; x += kRow) {
+        merge_rows(along_z, x, x + 1, kRow - 1, along_y);
+        merge_rows(along_z, x + 1, x, kRow - 1, along_y);
+    }
+    std::vector<std::uint64_t> along_x = along_y;
+    merge_rows(along_y, 0, kRow, kAll - kRow, along_x);
+    merge_rows(along_y, kRow, 0, kAll - kRow, along_x);
+    for (std::size_t i = 0; i < kAll; ++i) {
+        words_[2 * i] = static_cast<std::uint32_t>(along_x[i]);
+        words_[2 * i + 1] = static_cast<std::uint32_t>(along_x[i] >> 32U);
+    }
+}
+
+void trace_lines(const VoxelGrid& grid, std::span<const std::uint32_t> from,
+                 std::span<const std::uint32_t> to, std::span<std::uint8_t> visited,
+                 std::span<std::uint8_t> inside) {
+    Order order;
+    for (std::size_t first = 0; first < from.size(); first += kLines) {
+        const std::size_t count = std::min(kLines, from.size() - first);
+        std::uint8_t* length = visited.data() + first;
+        measure(from.data() + first, to.data() + first, count, length);
+        const std::size_t padded = sort_by_length(length, count, order);
+        trace(grid.words(), {from.data() + first, to.data() + first, length, order.data(), padded,
+                             inside.data() + first});
     }
 }
 

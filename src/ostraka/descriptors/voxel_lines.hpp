@@ -11,32 +11,33 @@ namespace ostraka {
 
 inline constexpr int kVoxels = 64;  // along each axis
 
-/// One bit a voxel; z runs along the bits of a word. 32 KiB, which fits the L1 cache.
+/// A voxel's coordinates, each in [0, 64), in one word: x lowest, a byte each.
+inline std::uint32_t pack_voxel(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return x | y << 8U | z << 16U;
+}
+
+/// One bit a voxel; z runs along the bits of two words. 32 KiB, which fits the L1 cache.
 class VoxelGrid {
   public:
-    /// Sets the voxel and its 26 neighbors. @param x, y, z in [0, 64).
-    void add_dilated(int x, int y, int z);
-    const std::uint64_t* words() const { return words_.data(); }
+    VoxelGrid() : words_(kVoxels * kVoxels * 2, 0) {}
+    /// Sets a voxel. @param voxel  see pack_voxel().
+    void set(std::uint32_t voxel);
+    /// Sets the 26 neighbors of every set voxel.
+    void dilate();
+    const std::uint32_t* words() const { return words_.data(); }
 
   private:
-    std::array<std::uint64_t, kVoxels * kVoxels> words_{};
+    std::vector<std::uint32_t> words_;
 };
 
-/// A voxel line: from a start voxel up to, not including, its end; at least the start.
-/// Coordinates are packed as fixed point, 6 bits before and 15 after the point, x and y at bits 0
-/// and 21, z at 43, so that one addition moves along all axes.
-struct VoxelLine {
-    std::uint64_t start = 0;
-    std::uint64_t step = 0;
-    std::int32_t length = 1;  // voxels visited: the largest coordinate difference, at least 1
-};
-
-/// The voxels that a Bresenham line with PCL's rounding visits.
-VoxelLine voxel_line(const std::array<std::int32_t, 3>& from,
-                     const std::array<std::int32_t, 3>& to);
-
-/// Counts the set voxels on each line. @param inside  as many as lines.
-void trace_lines(const VoxelGrid& grid, std::span<const VoxelLine> lines,
-                 std::span<std::int32_t> inside);
+/// Lines from voxel to voxel, without the end; at least the start: the voxels that a Bresenham line
+/// with PCL's rounding visits.
+/// @param from, to  packed voxels, as many as lines.
+/// @param visited  the number of voxels on each line: the largest coordinate difference, at
+/// least 1.
+/// @param inside  how many of them are set.
+void trace_lines(const VoxelGrid& grid, std::span<const std::uint32_t> from,
+                 std::span<const std::uint32_t> to, std::span<std::uint8_t> visited,
+                 std::span<std::uint8_t> inside);
 
 }  // namespace ostraka

@@ -45,25 +45,26 @@ std::vector<LabeledSegment> simulate_segments(const SceneModels& models,
 std::map<std::string, double> recognition_rates(const EntryIndex& index,
                                                 std::span<const LabeledSegment> segments,
                                                 std::size_t k) {
-    std::vector<std::string> names = {"fused"};
+    std::vector<std::string> names = {"fused", "keypoints"};
     for (const DescriptorTable& table : index.library().tables) {
         names.emplace_back(descriptor_name(table.descriptor));
     }
-    std::vector<PointCloud> prepared(segments.size());
+    std::vector<std::vector<int>> right(names.size(), std::vector<int>(segments.size(), 0));
     parallel_for(segments.size(), [&](std::size_t s) {
-        prepared[s] = prepare_segment(segments[s].cloud, index.library().settings);
+        const PreparedSegment prepared =
+            prepare_segment(segments[s].cloud, index.library().settings);
+        if (prepared.piece.size() < kMinPoints) return;
+        const SegmentEvidence evidence = gather_evidence(index, prepared);
+        for (std::size_t n = 0; n < names.size(); ++n) {
+            const auto ranking = rank_models(index, evidence, names[n], k);
+            right[n][s] = !ranking.empty() && ranking.front().model == segments[s].model ? 1 : 0;
+        }
     });
     std::map<std::string, double> rates;
-    for (const std::string& name : names) {
-        std::vector<int> right(segments.size(), 0);
-        parallel_for(segments.size(), [&](std::size_t s) {
-            if (prepared[s].size() < kMinPoints) return;
-            const auto ranking = classify(index, prepared[s], name, k);
-            right[s] = !ranking.empty() && ranking.front().model == segments[s].model ? 1 : 0;
-        });
+    for (std::size_t n = 0; n < names.size(); ++n) {
         double sum = 0.0;
-        for (const int value : right) sum += value;
-        rates[name] = segments.empty() ? 0.0 : sum / static_cast<double>(segments.size());
+        for (const int value : right[n]) sum += value;
+        rates[names[n]] = segments.empty() ? 0.0 : sum / static_cast<double>(segments.size());
     }
     return rates;
 }

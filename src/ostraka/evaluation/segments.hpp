@@ -31,8 +31,8 @@ std::vector<LabeledSegment> simulate_segments(const SceneModels& models,
                                               const SegmentSettings& settings,
                                               const Progress& progress = {});
 
-/// Share of segments whose first-ranked model is right, for each descriptor of the library and
-/// "fused".
+/// Share of segments whose first-ranked model is right, for each descriptor of the library,
+/// "keypoints" and "fused".
 /// @param segments  their model indices count the library's models.
 std::map<std::string, double> recognition_rates(const EntryIndex& index,
                                                 std::span<const LabeledSegment> segments,

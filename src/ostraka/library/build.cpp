@@ -196,6 +196,12 @@ LibrarySettings completed(LibrarySettings settings, std::span<const ModelSource>
         }
     }
     if (settings.descriptors.empty()) throw InvalidInput("a library needs at least one descriptor");
+    for (const AnyDescriptor& descriptor : settings.descriptors) {
+        if (descriptor_kind(descriptor) == DescriptorKind::global) continue;
+        throw InvalidInput(fmt::format(
+            "a library's entries have one row each, {} is a {} descriptor",
+            descriptor_name(descriptor), descriptor_kind_name(descriptor_kind(descriptor))));
+    }
     viewpoints(settings.views.count);
     cut_directions(settings.cuts.directions);
     settings.views.sampling = settings.sampling;

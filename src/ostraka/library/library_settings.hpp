@@ -21,7 +21,7 @@ struct LibrarySettings {
     CutSettings cuts;    ///< `cuts.cluster_tolerance` 0: 2 sampling distances
     bool full_views_only = false;  ///< the traditional library: whole views, no cuts, no selection
     SelectionSettings selection;   ///< redundancy and budget
-    std::vector<AnyDescriptor> descriptors = all_descriptors();  ///< rows stored for each entry
+    std::vector<AnyDescriptor> descriptors = global_descriptors();  ///< rows stored for each entry
     double keypoint_spacing = 3.5;  ///< between keypoints, in sampling distances
     double keypoint_radius = 10.0;  ///< support of their descriptors, in sampling distances
     std::uint64_t seed = 0;         ///< for every random step

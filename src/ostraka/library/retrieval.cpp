@@ -12,59 +12,40 @@
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/cloud/clusters.hpp"
 #include "ostraka/cloud/normals.hpp"
+#include "ostraka/cloud/range_smoothing.hpp"
 #include "ostraka/cloud/resample.hpp"
+#include "ostraka/library/consensus.hpp"
 
 namespace ostraka {
 namespace {
 
-constexpr std::size_t kScaleSamples = 200;  // entries that a table's scale is measured on
+constexpr std::size_t kScaleSamples = 200;   // entries that a table's scale is measured on
+constexpr std::size_t kMostKeypoints = 400;  // of a segment
 
-// Signed square roots of a row scaled to an absolute sum of 1.
-std::vector<float> rooted(std::span<const float> row) {
-    double sum = 0.0;
-    for (const float value : row) sum += std::abs(double{value});
-    const double scale = sum > 0.0 ? 1.0 / sum : 0.0;
-    std::vector<float> result(row.size());
-    for (std::size_t i = 0; i < row.size(); ++i) {
-        const double value = std::sqrt(std::abs(double{row[i]}) * scale);
-        result[i] = static_cast<float>(row[i] < 0.0F ? -value : value);
-    }
-    return result;
-}
+// The fused score's weights, chosen on scenes of other seeds than those that are reported.
+constexpr double kLikenessShare = 0.4;
+constexpr double kLikeness = 10.0;  // a model half as far again as the nearest counts exp(-5)
 
-// Eight partial sums in a fixed order, so that the compiler may vectorize and the bits stay the
-// same.
-float squared_distance(const float* a, const float* b, std::size_t length) {
-    std::array<float, 8> sums{};
-    std::size_t i = 0;
-    for (; i + 8 <= length; i += 8) {
-        for (std::size_t lane = 0; lane < 8; ++lane) {
-            const float difference = a[i + lane] - b[i + lane];
-            sums[lane] += difference * difference;
-        }
-    }
-    for (; i < length; ++i) sums[i % 8] += (a[i] - b[i]) * (a[i] - b[i]);
-    return ((sums[0] + sums[4]) + (sums[2] + sums[6])) +
-           ((sums[1] + sums[5]) + (sums[3] + sums[7]));
-}
-
-std::vector<float> distances_to_all(const std::vector<float>& rows, const float* row,
-                                    std::size_t length) {
-    std::vector<float> result(length > 0 ? rows.size() / length : 0);
+std::vector<float> distances_to_all(const std::vector<float>& rows, std::span<const float> row,
+                                    Metric metric) {
+    std::vector<float> result(row.empty() ? 0 : rows.size() / row.size());
     for (std::size_t i = 0; i < result.size(); ++i) {
-        result[i] = std::sqrt(squared_distance(rows.data() + i * length, row, length));
+        const auto other = std::span<const float>(rows).subspan(i * row.size(), row.size());
+        result[i] = distance(other, row, metric);
     }
     return result;
 }
 
 // Median over entries of the distance to the nearest entry of another model (of any other entry if
 // there is one model only).
-float table_scale(const ModelLibrary& library, const std::vector<float>& rows, std::size_t length) {
+float table_scale(const ModelLibrary& library, const std::vector<float>& rows, std::size_t length,
+                  Metric metric) {
     const std::size_t count = library.entries.size();
     const std::size_t stride = 1 + count / kScaleSamples;
     std::vector<float> nearest;
     for (std::size_t i = 0; i < count; i += stride) {
-        const std::vector<float> all = distances_to_all(rows, rows.data() + i * length, length);
+        const auto row = std::span<const float>(rows).subspan(i * length, length);
+        const std::vector<float> all = distances_to_all(rows, row, metric);
         float best = std::numeric_limits<float>::max();
         for (std::size_t j = 0; j < count; ++j) {
             const bool same_model = library.entries[i].model == library.entries[j].model;
@@ -78,40 +59,88 @@ float table_scale(const ModelLibrary& library, const std::vector<float>& rows, s
     return std::max(nearest[nearest.size() / 2], 1e-6F);
 }
 
+PointCloud with_normals(PointCloud cloud, const LibrarySettings& settings) {
+    cloud.normals = estimate_normals_within(cloud, kNormalRadius * settings.sampling);
+    return remove_invalid(cloud);
+}
+
 bool nearer(const EntryMatch& a, const EntryMatch& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.entry < b.entry;
 }
 
+// Replaces the scores of a ranking by global descriptors, and sorts anew. Where a piece is too
+// small for keypoints the ranking stays.
+void add_keypoints(std::span<const double> consensus, bool fuse,
+                   std::vector<RankedModel>& ranking) {
+    const double highest = *std::max_element(consensus.begin(), consensus.end());
+    float nearest = std::numeric_limits<float>::max();
+    for (const RankedModel& ranked : ranking) nearest = std::min(nearest, ranked.best.distance);
+    for (RankedModel& ranked : ranking) {
+        ranked.score = consensus[ranked.model];
+        if (!fuse) continue;
+        const double agreement = highest > 0.0 ? consensus[ranked.model] / highest : 1.0;
+        const double likeness =
+            std::exp(kLikeness * (1.0 - double{ranked.best.distance} / std::max(nearest, 1e-6F)));
+        ranked.score = (agreement + kLikenessShare * likeness) / (1.0 + kLikenessShare);
+    }
+    std::stable_sort(ranking.begin(), ranking.end(),
+                     [](const auto& a, const auto& b) { return a.score > b.score; });
+}
+
+std::vector<double> consensus_of(const EntryIndex& index, const PointCloud& cloud) {
+    const LibrarySettings& settings = index.library().settings;
+    const SceneKeypoints scene =
+        scene_keypoints(cloud, settings, settings.keypoint_spacing, kMostKeypoints);
+    return keypoint_consensus(index.keypoints().match(scene), settings.sampling);
+}
+
+std::size_t table_number(const ModelLibrary& library, std::string_view descriptor) {
+    for (std::size_t t = 0; t < library.tables.size(); ++t) {
+        if (descriptor_name(library.tables[t].descriptor) == descriptor) return t;
+    }
+    throw InvalidInput(fmt::format("the library has no descriptor {}", descriptor));
+}
+
 }  // namespace
 
-EntryIndex::EntryIndex(const ModelLibrary& library)
-    : library_(&library), rows_(library.tables.size()), scales_(library.tables.size()) {
+EntryIndex::EntryIndex(const ModelLibrary& library, std::optional<Metric> metric)
+    : library_(&library),
+      metrics_(library.tables.size()),
+      rows_(library.tables.size()),
+      scales_(library.tables.size()),
+      keypoints_(library) {
     parallel_for(library.tables.size(), [&](std::size_t t) {
         const DescriptorTable& table = library.tables[t];
         const std::size_t length = descriptor_length(table.descriptor);
+        metrics_[t] = metric.value_or(best_metric(table.descriptor));
         rows_[t].reserve(table.rows.size());
         for (std::size_t i = 0; i < library.entries.size(); ++i) {
-            const std::vector<float> row =
-                rooted(std::span<const float>(table.rows).subspan(i * length, length));
+            const std::vector<float> row = comparable_row(
+                std::span<const float>(table.rows).subspan(i * length, length), metrics_[t]);
             rows_[t].insert(rows_[t].end(), row.begin(), row.end());
         }
-        scales_[t] = table_scale(library, rows_[t], length);
+        scales_[t] = table_scale(library, rows_[t], length, metrics_[t]);
     });
 }
 
 std::vector<float> EntryIndex::distances(std::size_t table, std::span<const float> row) const {
-    const std::vector<float> query = rooted(row);
-    return distances_to_all(rows_[table], query.data(), query.size());
+    return distances_to_all(rows_[table], comparable_row(row, metrics_[table]), metrics_[table]);
+}
+
+std::vector<float> EntryIndex::fused(std::span<const std::vector<float>> distances) const {
+    std::vector<float> sum(library_->entries.size(), 0.0F);
+    for (std::size_t t = 0; t < distances.size(); ++t) {
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += distances[t][i] / scales_[t];
+    }
+    return sum;
 }
 
 std::vector<float> EntryIndex::fused_distances(const PointCloud& cloud) const {
-    std::vector<float> sum(library_->entries.size(), 0.0F);
+    std::vector<std::vector<float>> all(rows_.size());
     for (std::size_t t = 0; t < rows_.size(); ++t) {
-        const std::vector<float> one =
-            distances(t, describe(cloud, library_->tables[t].descriptor));
-        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += one[i] / scales_[t];
+        all[t] = distances(t, describe(cloud, library_->tables[t].descriptor));
     }
-    return sum;
+    return fused(all);
 }
 
 std::vector<EntryMatch> nearest_entries(std::span<const float> distances, std::size_t k) {
@@ -149,31 +178,54 @@ std::vector<RankedModel> rank_models(const ModelLibrary& library, std::span<cons
     return ranking;
 }
 
-PointCloud prepare_segment(const PointCloud& segment, const LibrarySettings& settings) {
-    PointCloud cloud = segment;
-    cloud.normals.clear();
-    cloud = resample(cloud, settings.sampling);
-    if (cloud.empty()) return cloud;
-    if (!settings.full_views_only) {
-        const Clusters clusters = euclidean_clusters(cloud.points, settings.cuts.cluster_tolerance);
-        cloud = select(cloud, clusters.front());
+PreparedSegment prepare_segment(const PointCloud& segment, const LibrarySettings& settings) {
+    PreparedSegment prepared;
+    const PointCloud cloud =
+        resample(smooth_ranges(segment, {.spacing = settings.sampling}), settings.sampling);
+    if (cloud.empty()) return prepared;
+    prepared.whole = with_normals(cloud, settings);
+    prepared.piece = prepared.whole;
+    if (settings.full_views_only) return prepared;
+    const Clusters clusters = euclidean_clusters(cloud.points, settings.cuts.cluster_tolerance);
+    // Normals are worked out within the piece: what lies beyond a gap is not part of it.
+    if (clusters.size() > 1) {
+        prepared.piece = with_normals(select(cloud, clusters.front()), settings);
     }
-    cloud.normals = estimate_normals_within(cloud, kNormalRadius * settings.sampling);
-    return remove_invalid(cloud);
+    return prepared;
 }
 
-std::vector<RankedModel> classify(const EntryIndex& index, const PointCloud& segment,
+SegmentEvidence gather_evidence(const EntryIndex& index, const PreparedSegment& segment) {
+    if (segment.empty()) throw InvalidInput("the segment has fewer than 3 points");
+    SegmentEvidence evidence;
+    for (std::size_t t = 0; t < index.library().tables.size(); ++t) {
+        const AnyDescriptor& descriptor = index.library().tables[t].descriptor;
+        evidence.distances.push_back(index.distances(t, describe(segment.piece, descriptor)));
+    }
+    evidence.consensus = consensus_of(index, segment.whole);
+    return evidence;
+}
+
+std::vector<RankedModel> rank_models(const EntryIndex& index, const SegmentEvidence& evidence,
+                                     std::string_view descriptor, std::size_t k) {
+    const ModelLibrary& library = index.library();
+    if (descriptor != "fused" && descriptor != "keypoints") {
+        return rank_models(library, evidence.distances[table_number(library, descriptor)], k);
+    }
+    auto ranking = rank_models(library, index.fused(evidence.distances), k);
+    add_keypoints(evidence.consensus, descriptor == "fused", ranking);
+    return ranking;
+}
+
+std::vector<RankedModel> classify(const EntryIndex& index, const PreparedSegment& segment,
                                   std::string_view descriptor, std::size_t k) {
     const ModelLibrary& library = index.library();
-    if (descriptor == "fused") {
-        return rank_models(library, index.fused_distances(segment), k);
+    if (descriptor == "fused" || descriptor == "keypoints") {
+        return rank_models(index, gather_evidence(index, segment), descriptor, k);
     }
-    for (std::size_t t = 0; t < library.tables.size(); ++t) {
-        const AnyDescriptor& candidate = library.tables[t].descriptor;
-        if (descriptor_name(candidate) != descriptor) continue;
-        return rank_models(library, index.distances(t, describe(segment, candidate)), k);
-    }
-    throw InvalidInput(fmt::format("the library has no descriptor {}", descriptor));
+    if (segment.empty()) throw InvalidInput("the segment has fewer than 3 points");
+    const std::size_t table = table_number(library, descriptor);
+    const auto row = describe(segment.piece, library.tables[table].descriptor);
+    return rank_models(library, index.distances(table, row), k);
 }
 
 }  // namespace ostraka

@@ -6,30 +6,15 @@
 // consistency).
 #pragma once
 
+#include "ostraka/library/keypoint_index.hpp"
 #include "ostraka/recognition/hypothesis.hpp"
 
 namespace ostraka {
 
-/// One match between a keypoint of the scan and one of a model.
-struct Correspondence {
-    Vec3f scene_point;
-    Vec3f model_point;
-    Mat3f R_scene_model;         ///< turns the model keypoint's frame into the scene keypoint's
-    std::int32_t distance = -1;  ///< squared, between quantized rows; -1: no match
-};
-
-/// Quantized rows widened for comparison, with their squared lengths.
-struct WideRows {
-    std::vector<std::int16_t> values;   ///< rows x kShotLength
-    std::vector<std::int32_t> squares;  ///< per row
-};
-WideRows widen(std::span<const std::uint8_t> rows);
-
-/// For each model the best match of each keypoint of the scan, best first.
-/// @param model_rows  widen() of each model's keypoint rows.
+/// For each model the best match of each keypoint of the scan's foreground, best first.
 std::vector<std::vector<Correspondence>> match_keypoints(const Scan& scan,
-                                                         const ModelLibrary& library,
-                                                         std::span<const WideRows> model_rows,
+                                                         const LibrarySettings& library,
+                                                         const KeypointIndex& index,
                                                          const RecognitionSettings& settings);
 
 /// Poses from matches of one model: one from each match alone, and one from each group of matches

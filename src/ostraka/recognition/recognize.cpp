@@ -48,7 +48,6 @@ struct Recognizer::Implementation {
     explicit Implementation(const ModelLibrary& given)
         : library(given), index(given), probes(make_probes(given)) {
         if (given.models.empty()) throw InvalidInput("the library has no models");
-        for (const Model& model : given.models) rows.push_back(widen(model.keypoints.rows));
     }
 
     // Hypotheses of every source, by model.
@@ -63,7 +62,7 @@ struct Recognizer::Implementation {
             result.seconds["segments"] = watch.lap();
         }
         if (settings.use_keypoints) {
-            const auto matches = match_keypoints(scan, library, rows, settings);
+            const auto matches = match_keypoints(scan, library.settings, index.keypoints(), settings);
             for (std::uint32_t m = 0; m < matches.size(); ++m) {
                 for (const Pose& pose : poses_from_matches(matches[m], 2.0 * scan.sampling)) {
                     by_model[m].push_back(
@@ -78,7 +77,6 @@ struct Recognizer::Implementation {
     const ModelLibrary& library;
     EntryIndex index;
     std::vector<ModelProbe> probes;
-    std::vector<WideRows> rows;  // of each model's keypoints
 };
 
 Recognizer::Recognizer(const ModelLibrary& library)

@@ -8,6 +8,7 @@
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/cloud/normals.hpp"
+#include "ostraka/cloud/range_smoothing.hpp"
 #include "ostraka/cloud/resample.hpp"
 
 namespace ostraka {
@@ -67,7 +68,7 @@ Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
     points.normals.clear();  // worked out anew at the library's density, as for its views
     const PointCloud valid = remove_invalid(points);
     check_size(valid, raw.size(), model_diameter);
-    PointCloud cloud = resample(valid, sampling);
+    PointCloud cloud = resample(smooth_ranges(valid, {.spacing = sampling}), sampling);
     cloud.colors.clear();
     cloud.normals = estimate_normals_within(cloud, kNormalRadius * sampling);
     cloud = remove_invalid(cloud);

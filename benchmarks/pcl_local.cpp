@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Local descriptors at 200 keypoints, radius 15 mesh resolutions, against PCL.
+#include <pcl/features/rops_estimation.h>
+#include <pcl/features/shot.h>
+
+#include <memory>
+
+#include "benchmark.hpp"
+#include "ostraka/cloud/kdtree.hpp"
+#include "ostraka/descriptors/rops.hpp"
+#include "ostraka/descriptors/shot.hpp"
+#include "pcl_clouds.hpp"
+#include "pcl_surface.hpp"
+
+namespace ostraka::bench {
+namespace {
+
+constexpr double kRadius = 15.0;  // of the supports, in mesh resolutions
+
+template <class Output>
+struct State {
+    explicit State(const BenchCloud& cloud)
+        : points(pcl_points(cloud.cloud.points)),
+          normals(pcl_normals(cloud.cloud)),
+          keypoints(pcl_points(cloud.keypoints)),
+          radius(kRadius * cloud.mr) {}
+    PclPoints::Ptr points;
+    PclNormals::Ptr normals;
+    PclPoints::Ptr keypoints;
+    double radius;  // the cloud's unit
+    std::vector<float> ours;
+    Output pcl;
+
+    // What all of PCL's local descriptors want.
+    template <class Estimation>
+    void compute(Estimation& estimation) {
+        estimation.setInputCloud(keypoints);
+        estimation.setSearchSurface(points);
+        estimation.setRadiusSearch(radius);
+        estimation.setSearchMethod(PclTree::Ptr(new PclTree));
+        estimation.compute(pcl);
+    }
+};
+
+Contest shot(const BenchCloud& cloud) {
+    auto state = std::make_shared<State<pcl::PointCloud<pcl::SHOT352>>>(cloud);
+    const auto ours = [state, &cloud] {
+        const KdTree tree(cloud.cloud.points);
+        const ShotSettings settings{.radius = static_cast<float>(state->radius)};
+        state->ours = describe_shot(cloud.cloud, tree, cloud.keypoints, settings).rows;
+    };
+    const auto peer = [state] {
+        pcl::SHOTEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+        estimation.setInputNormals(state->normals);
+        estimation.setLRFRadius(static_cast<float>(state->radius));
+        state->compute(estimation);
+    };
+    const auto peer_rows = [state] {
+        std::vector<float> rows;
+        for (const auto& row : state->pcl) {
+            rows.insert(rows.end(), std::begin(row.descriptor), std::end(row.descriptor));
+        }
+        return rows;
+    };
+    return {{ours, [state] { return state->ours; }}, {peer, peer_rows}};
+}
+
+template <class Histograms>
+std::vector<float> rows_of(const Histograms& histograms) {
+    std::vector<float> rows;
+    for (const auto& row : histograms) {
+        rows.insert(rows.end(), std::begin(row.histogram), std::end(row.histogram));
+    }
+    return rows;
+}
+
+// Each side makes its own triangles, so the rows differ with them.
+Contest rops(const BenchCloud& cloud) {
+    auto state = std::make_shared<State<pcl::PointCloud<pcl::Histogram<135>>>>(cloud);
+    const auto ours = [state, &cloud] {
+        const KdTree tree(cloud.cloud.points);
+        const auto triangles = triangulate(cloud.cloud);
+        const RopsSettings settings{.radius = static_cast<float>(state->radius)};
+        state->ours = describe_rops(cloud.cloud, tree, triangles, cloud.keypoints, settings).rows;
+    };
+    const auto peer = [state, edge = 4.0 * cloud.mr] {
+        pcl::ROPSEstimation<pcl::PointXYZ, pcl::Histogram<135>> estimation;
+        estimation.setTriangles(pcl_triangles(*state->points, *state->normals, edge));
+        estimation.setSupportRadius(static_cast<float>(state->radius));
+        state->compute(estimation);
+    };
+    return {{ours, [state] { return state->ours; }},
+            {peer, [state] { return rows_of(state->pcl); }}};
+}
+
+}  // namespace
+
+std::vector<Benchmark> pcl_local_benchmarks() {
+    std::vector<Benchmark> list;
+    list.push_back(
+        {.name = "SHOT, 200 keypoints", .peer = kPcl, .goal = 8, .in_mean = true, .prepare = shot});
+    list.push_back({.name = "RoPS, 200 keypoints",
+                    .peer = kPcl,
+                    .goal = 10,
+                    .in_mean = true,
+                    .prepare = rops});
+    return list;
+}
+
+}  // namespace ostraka::bench

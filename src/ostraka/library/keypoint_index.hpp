@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nearest local descriptors: which point of each model looks most like a point of a scan.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ostraka/library/model_library.hpp"
+
+namespace ostraka {
+
+/// Quantized rows widened for comparison, with their squared lengths.
+struct WideRows {
+    std::vector<std::int16_t> values;   ///< rows x kShotLength
+    std::vector<std::int32_t> squares;  ///< per row
+};
+WideRows widen(std::span<const std::uint8_t> rows);
+
+/// Local descriptors of points spread over a scan or a piece of one.
+struct SceneKeypoints {
+    std::vector<Vec3f> points;  ///< scene frame, library unit
+    std::vector<Mat3f> frames;  ///< R_scene_keypoint
+    WideRows rows;
+    std::size_t size() const { return points.size(); }
+};
+
+/// A scene keypoint and the point of a model that looks most like it.
+struct Correspondence {
+    Vec3f scene_point;
+    Vec3f model_point;
+    Mat3f R_scene_model;         ///< turns the model keypoint's frame into the scene keypoint's
+    std::int32_t distance = -1;  ///< squared, between quantized rows; -1: no match
+};
+
+/// SHOT at points about `spacing` apart.
+/// @param cloud    with normals, at the library's sampling distance, library unit.
+/// @param spacing  in sampling distances.
+/// @param most     at most so many, thinned out evenly.
+SceneKeypoints scene_keypoints(const PointCloud& cloud, const LibrarySettings& settings,
+                               double spacing, std::size_t most);
+
+/// The keypoints of all models, ready to be searched. Exact and, as distances are integers, the
+/// same on every machine; const and safe from many threads. The library must outlive it.
+class KeypointIndex {
+  public:
+    explicit KeypointIndex(const ModelLibrary& library);
+
+    /// For each model of the library, the best match of each scene keypoint, in their order; no
+    /// matches for a model without keypoints.
+    std::vector<std::vector<Correspondence>> match(const SceneKeypoints& scene) const;
+
+  private:
+    const ModelLibrary* library_;
+    std::vector<WideRows> rows_;  // of each model
+};
+
+}  // namespace ostraka
