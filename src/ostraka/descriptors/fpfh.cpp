@@ -36,7 +36,7 @@ __attribute__((always_inline)) inline void load_surfels(const SurfelColumns& c, 
 
 __attribute__((always_inline)) inline void vote(PackedHistogram& histogram, const Int8& bins,
                                                 const Voters8& voters) {
-    vote8(histogram, 5 * PackedHistogram::kField + (bins << 2) + bins, voters);
+    vote8(histogram, 5 * PackedHistogram::kField - ((bins << 2) + bins), voters);
 }
 
 // The angles between surfel `own` of the grid and all surfels closer than the radius, itself

@@ -43,7 +43,7 @@ struct Surfels8 {
     Float8 x, y, z, nx, ny, nz;
 };
 
-/// Bins of eight pairs, minus the middle bin, and the squared distance of each pair.
+/// The middle bin minus the bins of eight pairs, and the squared distance of each pair.
 struct PairBins8 {
     Int8 angle, across, along;
     Float8 squared_distance;
@@ -52,8 +52,8 @@ struct PairBins8 {
 // `borders` holds minus the number of borders exceeded, as masks add up to.
 __attribute__((always_inline)) inline void with_sign_of(const Float8& value, const Int8& borders,
                                                         Int8& bins) {
-    const Int8 positive = ~(reinterpret_cast<Int8>(value) >> 31);
-    bins = (borders ^ positive) - positive;
+    const Int8 negative = reinterpret_cast<Int8>(value) >> 31;
+    bins = (borders ^ negative) - negative;
 }
 
 /// The bins of the pairs of one surfel (in all lanes of p) with eight others.
@@ -76,22 +76,24 @@ __attribute__((always_inline)) inline void pair_bins(const Surfels8& p, const Su
     const Int8 exchange = aa < bb;
     const Float8 first = exchange ? -b : a;
     const Float8 second = exchange ? -a : b;
-    const Float8 along2 = exchange ? bb : aa;
+    const Float8 along2 = aa > bb ? aa : bb;
     // |d x u|^2. Within 1e-3 of the normal's direction it is rounding noise, and v has no meaning.
     const Float8 cross2 = dd - along2;
     const Int8 defined = cross2 > dd * 1e-6F;
 
     const Float8 sine = second - first * cosine;  // times |d x u|
     const Float8 sine2 = sine * sine;
-    const Float8 reference2 = cosine * cosine * cross2;
+    // Negative beyond a quarter turn: then all acute borders are exceeded, and before it no obtuse
+    // one is.
+    const Float8 size = reinterpret_cast<Float8>(reinterpret_cast<Int8>(cosine) & 0x7fffffff);
+    const Float8 reference2 = cosine * size * cross2;
     const Float8 triple2 = triple * triple;
-    const Int8 backward = cosine < 0.0F;
     Int8 angle = {};
     Int8 across = {};
     Int8 along = {};
     for (int k = 0; k < Borders::kSide; ++k) {
-        const Float8 border2 = reference2 * Borders::kTangent[k];
-        angle += k < Borders::kAcute ? (sine2 > border2) | backward : (sine2 < border2) & backward;
+        angle += k < Borders::kAcute ? sine2 > reference2 * Borders::kTangent[k]
+                                     : sine2 < reference2 * -Borders::kTangent[k];
         across += triple2 > cross2 * Borders::kCosine[k];
         along += along2 > dd * Borders::kCosine[k];
     }

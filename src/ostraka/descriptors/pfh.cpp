@@ -39,7 +39,8 @@ void count_pairs(const SurfelColumns& c, std::size_t own, LaneCounts& counts) {
         load8(c.nz.data() + i, q.nz);
         PairBins8 bins;
         pair_bins<kBins>(p, q, bins);
-        const Int8 bin = kMiddle + bins.angle + bins.across * kBins + bins.along * (kBins * kBins);
+        const Int8 bin =
+            kMiddle - (bins.angle + bins.across * kBins + bins.along * (kBins * kBins));
         const Int8 before = lane < static_cast<std::int32_t>(own - i);
         const Int8 vote = before ? bin : Int8{} + static_cast<std::int32_t>(kPfhLength);
         std::array<std::int32_t, kVectorLanes> votes;

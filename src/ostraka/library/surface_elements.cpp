@@ -1,32 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/library/surface_elements.hpp"
 
-#include <algorithm>
 #include <bit>
-#include <limits>
+
+#include "ostraka/cloud/farthest_points.hpp"
 
 namespace ostraka {
-namespace {
-
-// Farthest-point subset (Eldar et al. 1997), starting from the point farthest from the centroid.
-std::vector<std::uint32_t> spread(const std::vector<Vec3f>& points, std::size_t count) {
-    const Vec3f center = centroid(points).cast<float>();
-    std::vector<float> squared(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) squared[i] = (points[i] - center).squaredNorm();
-    std::vector<std::uint32_t> chosen;
-    for (std::size_t k = 0; k < std::min(count, points.size()); ++k) {
-        const auto next = static_cast<std::uint32_t>(
-            std::max_element(squared.begin(), squared.end()) - squared.begin());
-        if (k == 0) std::fill(squared.begin(), squared.end(), std::numeric_limits<float>::max());
-        chosen.push_back(next);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            squared[i] = std::min(squared[i], (points[i] - points[next]).squaredNorm());
-        }
-    }
-    return chosen;
-}
-
-}  // namespace
 
 double overlap(const ElementSet& a, const ElementSet& b) {
     int common = 0;
@@ -51,7 +30,9 @@ __attribute__((target_clones("default", "popcnt", "arch=icelake-server"))) void 
 }
 
 SurfaceElements::SurfaceElements(const PointCloud& surface) : tree_({}) {
-    for (const std::uint32_t i : spread(surface.points, kSurfaceElements)) {
+    const Vec3f center = centroid(surface.points).cast<float>();
+    const std::uint32_t first = farthest_from(surface.points, center);
+    for (const std::uint32_t i : farthest_points(surface.points, kSurfaceElements, first)) {
         centers_.push_back(surface.points[i]);
         normals_.push_back(surface.normals[i]);
     }

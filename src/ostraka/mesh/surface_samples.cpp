@@ -3,21 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ostraka/base/random.hpp"
+#include "ostraka/cloud/farthest_points.hpp"
 
 namespace ostraka {
 namespace {
 
 constexpr std::size_t kOversampling = 8;
-
-// Index of the largest value; the first of equals.
-std::size_t farthest(const std::vector<float>& squared_distances) {
-    return static_cast<std::size_t>(
-        std::max_element(squared_distances.begin(), squared_distances.end()) -
-        squared_distances.begin());
-}
 
 }  // namespace
 
@@ -49,17 +42,10 @@ SurfaceSamples sample_uniformly(const TriangleMesh& mesh, std::size_t count, std
 
 SurfaceSamples sample_evenly(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed) {
     const SurfaceSamples pool = sample_uniformly(mesh, kOversampling * count, seed);
-    std::vector<float> squared(pool.points.size(), std::numeric_limits<float>::max());
     SurfaceSamples samples;
-    std::size_t next = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-        const Vec3f chosen = pool.points[next];
-        samples.points.push_back(chosen);
-        samples.normals.push_back(pool.normals[next]);
-        for (std::size_t i = 0; i < squared.size(); ++i) {
-            squared[i] = std::min(squared[i], (pool.points[i] - chosen).squaredNorm());
-        }
-        next = farthest(squared);
+    for (const std::uint32_t i : farthest_points(pool.points, count)) {
+        samples.points.push_back(pool.points[i]);
+        samples.normals.push_back(pool.normals[i]);
     }
     return samples;
 }

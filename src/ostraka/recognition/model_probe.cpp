@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/recognition/model_probe.hpp"
 
-#include <algorithm>
-#include <limits>
-
 #include "ostraka/base/parallel.hpp"
+#include "ostraka/cloud/farthest_points.hpp"
 #include "ostraka/views/viewpoints.hpp"
 
 namespace ostraka {
@@ -15,29 +13,13 @@ constexpr double kFieldMargin = 0.1;   // of the diameter: how far off a pose ma
 constexpr double kViewDistance = 3.0;  // diameters
 constexpr double kHitTolerance = 1.0;  // sampling distances
 
-// Farthest-point subset: its order is coarse to fine.
-std::vector<std::uint32_t> spread(const std::vector<Vec3f>& points, std::size_t count) {
-    std::vector<float> squared(points.size(), std::numeric_limits<float>::max());
-    std::vector<std::uint32_t> chosen;
-    std::uint32_t next = 0;
-    for (std::size_t k = 0; k < std::min(count, points.size()); ++k) {
-        chosen.push_back(next);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            squared[i] = std::min(squared[i], (points[i] - points[next]).squaredNorm());
-        }
-        next = static_cast<std::uint32_t>(std::max_element(squared.begin(), squared.end()) -
-                                          squared.begin());
-    }
-    return chosen;
-}
-
 }  // namespace
 
 ModelProbe::ModelProbe(const Model& model, double sampling)
     : model_(&model),
       field_(model.surface, kFieldCell * sampling, kFieldMargin * model.shape.diameter),
       rays_({model.mesh}) {
-    for (const std::uint32_t i : spread(model.surface.points, kProbeSamples)) {
+    for (const std::uint32_t i : farthest_points(model.surface.points, kProbeSamples)) {
         samples_.push_back(model.surface.points[i]);
         normals_.push_back(model.surface.normals[i]);
     }

@@ -62,7 +62,8 @@ struct Recognizer::Implementation {
             result.seconds["segments"] = watch.lap();
         }
         if (settings.use_keypoints) {
-            const auto matches = match_keypoints(scan, library.settings, index.keypoints(), settings);
+            const auto matches =
+                match_keypoints(scan, library.settings, index.keypoints(), settings);
             for (std::uint32_t m = 0; m < matches.size(); ++m) {
                 for (const Pose& pose : poses_from_matches(matches[m], 2.0 * scan.sampling)) {
                     by_model[m].push_back(

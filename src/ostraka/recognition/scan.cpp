@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/cloud/farthest_points.hpp"
 #include "ostraka/cloud/normals.hpp"
 #include "ostraka/cloud/range_smoothing.hpp"
 #include "ostraka/cloud/resample.hpp"
@@ -18,20 +19,14 @@ constexpr std::size_t kMinPoints = 10;
 constexpr double kMaxModelsAcross = 500.0;  // a scan wider than so many models has another unit
 constexpr double kMinModelsAcross = 0.02;   // as has one narrower than this
 
-const Vec3f& farthest_from(const Vec3f& place, const PointCloud& cloud) {
-    const auto nearer = [&](const Vec3f& a, const Vec3f& b) {
-        return (a - place).squaredNorm() < (b - place).squaredNorm();
-    };
-    return *std::max_element(cloud.points.begin(), cloud.points.end(), nearer);
-}
-
 // The distance of two points that are about the farthest from each other: never more than the
 // diameter, hardly less, and the same however the scan is turned.
 double extent_of(const PointCloud& cloud) {
-    Vec3f a = farthest_from(centroid(cloud.points).cast<float>(), cloud);
+    const std::vector<Vec3f>& points = cloud.points;
+    Vec3f a = points[farthest_from(points, centroid(points).cast<float>())];
     double extent = 0.0;
     for (int sweep = 0; sweep < 3; ++sweep) {
-        const Vec3f b = farthest_from(a, cloud);
+        const Vec3f b = points[farthest_from(points, a)];
         extent = std::max(extent, (b - a).cast<double>().norm());
         a = b;
     }
