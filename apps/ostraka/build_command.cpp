@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <memory>
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "ostraka/base/error.hpp"
 #include "ostraka/base/stopwatch.hpp"
 #include "ostraka/io/atomic_file.hpp"
 #include "ostraka/library/build.hpp"
@@ -20,6 +23,7 @@ struct BuildOptions {
     std::string unit;
     std::string fractions;
     std::string descriptors;
+    std::string shard;
     LibrarySettings settings;
 };
 
@@ -40,6 +44,41 @@ std::vector<AnyDescriptor> parse_descriptors(const std::string& text) {
         name.clear();
     }
     return descriptors;
+}
+
+struct Shard {
+    std::size_t number = 0;  // from 0
+    std::size_t count = 1;
+};
+
+Shard parse_shard(const std::string& text) {
+    Shard shard;
+    if (text.empty()) return shard;
+    char end = '\0';
+    if (std::sscanf(text.c_str(), "%zu/%zu%c", &shard.number, &shard.count, &end) != 2 ||
+        shard.number < 1 || shard.number > shard.count) {
+        throw CLI::ValidationError("--shard", text + " is not like 2/4");
+    }
+    --shard.number;
+    return shard;
+}
+
+// Every count-th model by name. What is derived from all models is worked out before.
+std::vector<ModelSource> models_of_shard(std::vector<ModelSource> models, const Shard& shard,
+                                         LibrarySettings& settings) {
+    if (shard.count == 1) return models;
+    if (settings.sampling == 0.0) settings.sampling = default_sampling(models);
+    std::sort(models.begin(), models.end(),
+              [](const auto& a, const auto& b) { return a.name < b.name; });
+    std::vector<ModelSource> mine;
+    for (std::size_t i = shard.number; i < models.size(); i += shard.count) {
+        mine.push_back(std::move(models[i]));
+    }
+    if (mine.empty()) {
+        throw InvalidInput(fmt::format("shard {} of {} has none of the {} models: use fewer shards",
+                                       shard.number + 1, shard.count, models.size()));
+    }
+    return mine;
 }
 
 std::string size_hint(const std::vector<ModelSource>& models) {
@@ -99,11 +138,13 @@ void run_build(BuildOptions& options) {
         settings.cuts.fractions = parse_numbers(options.fractions, "--fractions");
     }
     if (!options.descriptors.empty()) settings.descriptors = parse_descriptors(options.descriptors);
+    const Shard shard = parse_shard(options.shard);
     { const AtomicFile writable(options.output); }  // better to fail now than after the build
     std::vector<ModelSource> models;
     for (const std::string& path : options.models) models.push_back(load_model(path));
     settings.unit = require_unit(options.unit, options.unit.empty() ? size_hint(models) : "");
     settings.views.sensor.seed = settings.seed;
+    models = models_of_shard(std::move(models), shard, settings);
     const ModelLibrary library = build_library(models, settings, progress_bar());
     save_library(library, options.output);
     say_summary(library);
@@ -142,6 +183,9 @@ void add_build(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--seed", settings.seed, "seed of every random step")
         ->capture_default_str();
+    command->add_option("--shard", options->shard,
+                        "build the i-th of n shares of the models, as 2/4, for `ostraka merge`: "
+                        "give every shard all models");
     add_common(*command, options->common);
     command->callback([options] { run_build(*options); });
 }

@@ -10,6 +10,7 @@ void add_build(CLI::App& app);
 void add_recognize(CLI::App& app);
 void add_classify(CLI::App& app);
 void add_describe(CLI::App& app);
+void add_edit(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_views(CLI::App& app);
 void add_parts(CLI::App& app);

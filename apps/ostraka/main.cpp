@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
     app::add_recognize(app);
     app::add_classify(app);
     app::add_describe(app);
+    app::add_edit(app);
     app::add_inspect(app);
     app::add_views(app);
     app::add_parts(app);

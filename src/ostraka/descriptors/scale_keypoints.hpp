@@ -29,7 +29,8 @@ struct ScaleKeypoint {
 
 struct ScaleKeypointSettings {
     int levels = 20;  ///< smoothing steps; scales reach to sqrt(levels) edge lengths; 3 to 1000
-    float contrast = 0.05F;     ///< least response; about the relief of a feature in edge lengths
+    float contrast = 0.05F;     ///< least response; that of a round bump is a quarter of
+                                ///< its height in mean edge lengths
     bool keep_borders = false;  ///< also keypoints whose ring reaches the surface's border, where
                                 ///< occlusion made them
 };

@@ -12,8 +12,8 @@ namespace {
 
 // Beyond any point that is usable, and small enough that its square is finite.
 constexpr float kFarAway = 1e18F;
-// Measured on FPFH: 2 cells 11.1 ms, 3 cells 11.9 ms, 4 cells 13.5 ms. Finer cells have less to
-// skip but more to copy.
+// Measured on FPFH: finer cells have fewer points to look at, which pays for less than copying
+// them more often costs: 3 cells take 7 % longer, 4 cells 20 %.
 constexpr double kCellsPerRadius = 2.0;
 
 struct Reach {

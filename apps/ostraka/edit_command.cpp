@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "ostraka/base/stopwatch.hpp"
+#include "ostraka/io/atomic_file.hpp"
+#include "ostraka/library/edit.hpp"
+#include "ostraka/library/library_file.hpp"
+
+namespace ostraka::app {
+namespace {
+
+struct EditOptions {
+    CommonOptions common;
+    std::string library;
+    std::vector<std::string> inputs;  // model files, model names or libraries
+    std::string output;               // empty: the library itself
+};
+
+void save(const ModelLibrary& library, const EditOptions& options, const Stopwatch& watch) {
+    const std::string& path = options.output.empty() ? options.library : options.output;
+    save_library(library, path);
+    Json models = Json::array();
+    for (const Model& model : library.models) models.push_back(model.name);
+    say(fmt::format("{}: {} models, {} entries, {:.1f} s", path, library.models.size(),
+                    library.entries.size(), watch.seconds()));
+    write_json({{"library", path},
+                {"models", models},
+                {"entries", library.entries.size()},
+                {"seconds", watch.seconds()}},
+               options.common.json);
+}
+
+void run_add(const EditOptions& options) {
+    catch_interrupts();
+    const Stopwatch watch;
+    { const AtomicFile writable(options.output.empty() ? options.library : options.output); }
+    std::vector<ModelSource> models;
+    for (const std::string& path : options.inputs) models.push_back(load_model(path));
+    save(add_models(load_library(options.library), models, progress_bar()), options, watch);
+}
+
+void run_remove(const EditOptions& options) {
+    const Stopwatch watch;
+    ModelLibrary library = load_library(options.library);
+    for (const std::string& name : options.inputs) library = remove_model(std::move(library), name);
+    save(library, options, watch);
+}
+
+void run_rename(const EditOptions& options) {
+    const Stopwatch watch;
+    save(rename_model(load_library(options.library), options.inputs[0], options.inputs[1]), options,
+         watch);
+}
+
+void run_merge(const EditOptions& options) {
+    const Stopwatch watch;
+    std::vector<ModelLibrary> libraries;
+    for (const std::string& path : options.inputs) libraries.push_back(load_library(path));
+    save(merge_libraries(std::move(libraries)), options, watch);
+}
+
+void add_output(CLI::App& command, EditOptions& options) {
+    command.add_option("-o,--output", options.output, "file to write (default: LIBRARY itself)");
+}
+
+}  // namespace
+
+void add_edit(CLI::App& app) {
+    auto add = std::make_shared<EditOptions>();
+    CLI::App* command = app.add_subcommand(
+        "add", "add models to a library, built with its own settings; the others stay as they are");
+    command->add_option("library", add->library, "library made by `ostraka build`")->required();
+    command->add_option("models", add->inputs, "mesh files, in the library's unit")->required();
+    add_output(*command, *add);
+    add_common(*command, add->common);
+    command->callback([add] { run_add(*add); });
+
+    auto remove = std::make_shared<EditOptions>();
+    command = app.add_subcommand("remove", "remove models from a library");
+    command->add_option("library", remove->library, "library made by `ostraka build`")->required();
+    command->add_option("names", remove->inputs, "names of models (see `ostraka inspect`)")
+        ->required();
+    add_output(*command, *remove);
+    add_common(*command, remove->common);
+    command->callback([remove] { run_remove(*remove); });
+
+    auto rename = std::make_shared<EditOptions>();
+    command = app.add_subcommand("rename", "give a model of a library another name");
+    command->add_option("library", rename->library, "library made by `ostraka build`")->required();
+    command->add_option("names", rename->inputs, "the old and the new name")
+        ->required()
+        ->expected(2);
+    add_output(*command, *rename);
+    add_common(*command, rename->common);
+    command->callback([rename] { run_rename(*rename); });
+
+    auto merge = std::make_shared<EditOptions>();
+    command = app.add_subcommand(
+        "merge", "one library of all models of several; their settings must be the same");
+    command->add_option("libraries", merge->inputs, "libraries made by `ostraka build`")
+        ->required();
+    command->add_option("-o,--output", merge->output, "library file to write")->required();
+    add_common(*command, merge->common);
+    command->callback([merge] { run_merge(*merge); });
+}
+
+}  // namespace ostraka::app

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Libraries from libraries on the command line: shards, merge, add, remove, rename.
+
+Usage: library_edit_test.py PATH_OF_OSTRAKA
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+OSTRAKA = ""
+PARTS = ["cam", "hook", "tee"]
+QUICK = ["--unit", "mm", "--views", "12", "--directions", "6", "--budget", "12"]
+INVALID = 3
+
+
+def run(*arguments):
+    return subprocess.run([OSTRAKA, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True)
+
+
+def content(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+class LibraryEdit(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="ostraka_edit_")
+        made = run("parts", *PARTS, "-o", cls.folder, "--format", "obj")
+        assert made.returncode == 0, made.stderr
+        cls.models = [cls.path(name + ".obj") for name in PARTS]
+        cls.whole = cls.path("whole.ostraka")
+        built = run("build", *cls.models, "-o", cls.whole, *QUICK)
+        assert built.returncode == 0, built.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder, name)
+
+    def succeed(self, *arguments):
+        result = run(*arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def refuse(self, *arguments, says):
+        result = run(*arguments)
+        self.assertEqual(result.returncode, INVALID, result.stderr)
+        self.assertIn(says, result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+
+    def test_merged_shards_are_the_library_built_at_once(self):
+        shards = []
+        for i in (1, 2):
+            shards.append(self.path(f"shard{i}.ostraka"))
+            self.succeed("build", *self.models, "-o", shards[-1], *QUICK, "--shard", f"{i}/2",
+                         "--threads", i)
+        merged = self.path("merged.ostraka")
+        self.succeed("merge", *reversed(shards), "-o", merged)
+        self.assertEqual(content(merged), content(self.whole))
+
+    def test_remove_and_add_again(self):
+        library = self.path("edited.ostraka")
+        shutil.copy(self.whole, library)
+        self.succeed("remove", library, "hook")
+        self.assertNotEqual(content(library), content(self.whole))
+        self.refuse("remove", library, "hook", says="hook")
+        self.succeed("add", library, self.path("hook.obj"))
+        self.assertEqual(content(library), content(self.whole))
+        self.refuse("add", library, self.path("hook.obj"), says="hook")
+        self.assertEqual(content(library), content(self.whole))
+
+    def test_rename_there_and_back(self):
+        renamed = self.path("renamed.ostraka")
+        self.succeed("rename", self.whole, "cam", "zeta", "-o", renamed)
+        self.assertNotEqual(content(renamed), content(self.whole))
+        self.succeed("rename", renamed, "zeta", "cam")
+        self.assertEqual(content(renamed), content(self.whole))
+        self.refuse("rename", renamed, "cam", "tee", says="tee")
+
+    def test_a_setting_that_differs_is_named(self):
+        other = self.path("other.ostraka")
+        self.succeed("build", self.models[0], "-o", other, *QUICK, "--sampling", 3)
+        self.refuse("merge", self.whole, other, "-o", self.path("none.ostraka"), says="sampling")
+        self.assertFalse(os.path.exists(self.path("none.ostraka")))
+
+    def test_wrong_shards_are_refused(self):
+        for shard in ("0/2", "3/2", "1", "a/b", "1/2/3"):
+            result = run("build", *self.models, "-o", self.path("x.ostraka"), *QUICK, "--shard", shard)
+            self.assertEqual(result.returncode, 2, result.stderr)
+        self.refuse("build", *self.models, "-o", self.path("x.ostraka"), *QUICK, "--shard", "5/5",
+                    says="fewer shards")
+
+
+if __name__ == "__main__":
+    OSTRAKA = sys.argv.pop(1)
+    unittest.main()
