@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "common.hpp"
@@ -44,6 +46,20 @@ std::vector<AnyDescriptor> parse_descriptors(const std::string& text) {
         name.clear();
     }
     return descriptors;
+}
+
+// "part.ply" or, in another unit than the library's, "part.ply:m".
+ModelSource load_in_unit(const std::string& argument, std::optional<Unit> unit) {
+    const std::size_t colon = argument.rfind(':');
+    if (colon == std::string::npos || std::filesystem::exists(argument))
+        return load_model(argument);
+    const std::optional<Unit> own = parse_unit(argument.substr(colon + 1));
+    if (!own) return load_model(argument);
+    ModelSource model = load_model(argument.substr(0, colon));
+    if (!unit) return model;  // the missing --unit is reported later, with the models' sizes
+    const auto factor = static_cast<float>(unit_factor(*own, *unit));
+    for (Vec3f& vertex : model.mesh.vertices) vertex *= factor;
+    return model;
 }
 
 struct Shard {
@@ -141,7 +157,9 @@ void run_build(BuildOptions& options) {
     const Shard shard = parse_shard(options.shard);
     { const AtomicFile writable(options.output); }  // better to fail now than after the build
     std::vector<ModelSource> models;
-    for (const std::string& path : options.models) models.push_back(load_model(path));
+    for (const std::string& path : options.models) {
+        models.push_back(load_in_unit(path, parse_unit(options.unit)));
+    }
     settings.unit = require_unit(options.unit, options.unit.empty() ? size_hint(models) : "");
     settings.views.sensor.seed = settings.seed;
     models = models_of_shard(std::move(models), shard, settings);
@@ -160,7 +178,11 @@ void run_build(BuildOptions& options) {
 void add_build(CLI::App& app) {
     auto options = std::make_shared<BuildOptions>();
     CLI::App* command = app.add_subcommand("build", "make a library of CAD models");
-    command->add_option("models", options->models, "mesh files: PLY, OBJ, STL, OFF, glTF")
+    command
+        ->add_option(
+            "models", options->models,
+            "mesh files: PLY, OBJ, STL, OFF, glTF; with :mm, :cm, :m or :in behind the name "
+            "where the unit is not --unit")
         ->required();
     command->add_option("-o,--output", options->output, "library file to write")->required();
     add_unit(*command, options->unit, "unit of the numbers in the model files");

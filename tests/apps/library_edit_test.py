@@ -4,6 +4,7 @@
 
 Usage: library_edit_test.py PATH_OF_OSTRAKA
 """
+import json
 import os
 import shutil
 import subprocess
@@ -90,6 +91,22 @@ class LibraryEdit(unittest.TestCase):
         self.succeed("build", self.models[0], "-o", other, *QUICK, "--sampling", 3)
         self.refuse("merge", self.whole, other, "-o", self.path("none.ostraka"), says="sampling")
         self.assertFalse(os.path.exists(self.path("none.ostraka")))
+
+    def test_a_model_may_have_a_unit_of_its_own(self):
+        in_cm = self.path("cam_cm")
+        os.mkdir(in_cm)
+        with open(self.models[0]) as source, open(os.path.join(in_cm, "cam.obj"), "w") as target:
+            for line in source:
+                if line.startswith("v "):
+                    line = "v " + " ".join(str(float(c) / 10) for c in line.split()[1:4]) + "\n"
+                target.write(line)
+        result = run("build", os.path.join(in_cm, "cam.obj") + ":cm", self.models[1],
+                     "-o", self.path("mixed.ostraka"), *QUICK, "--json", "-")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        alike = run("build", *self.models[:2], "-o", self.path("alike.ostraka"), *QUICK, "--json", "-")
+        sizes = [[m["diameter"] for m in json.loads(r.stdout)["models"]] for r in (result, alike)]
+        for a, b in zip(*sizes):
+            self.assertAlmostEqual(a, b, delta=1e-4 * b)
 
     def test_wrong_shards_are_refused(self):
         for shard in ("0/2", "3/2", "1", "a/b", "1/2/3"):
