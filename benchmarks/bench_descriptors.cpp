@@ -70,8 +70,8 @@ Options parse(int count, char** arguments) {
 
 std::vector<Benchmark> single_thread_benchmarks() {
     std::vector<Benchmark> all;
-    for (auto* list : {&pcl_geometry_benchmarks, &pcl_global_benchmarks, &pcl_local_benchmarks,
-                       &open3d_benchmarks}) {
+    for (auto* list : {&pcl_geometry_benchmarks, &pcl_global_benchmarks, &pcl_regional_benchmarks,
+                       &pcl_local_benchmarks, &open3d_benchmarks}) {
         for (Benchmark& benchmark : (*list)()) all.push_back(std::move(benchmark));
     }
     return all;

@@ -55,6 +55,7 @@ double relative_l1(const std::vector<float>& ours, const std::vector<float>& pee
 // One list a file; a list is empty where its peer was not found when the program was built.
 std::vector<Benchmark> pcl_geometry_benchmarks();
 std::vector<Benchmark> pcl_global_benchmarks();
+std::vector<Benchmark> pcl_regional_benchmarks();
 std::vector<Benchmark> pcl_local_benchmarks();
 std::vector<Benchmark> open3d_benchmarks();
 std::vector<Benchmark> thread_benchmarks();

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals and registration against Open3D.
+// Normals, FPFH and registration against Open3D.
 #include <omp.h>
 #include <open3d/geometry/PointCloud.h>
+#include <open3d/pipelines/registration/Feature.h>
 #include <open3d/pipelines/registration/Registration.h>
 
 #include <memory>
 
 #include "benchmark.hpp"
 #include "ostraka/cloud/normals.hpp"
+#include "ostraka/descriptors/fpfh.hpp"
 #include "registration_job.hpp"
 
 namespace ostraka::bench {
@@ -49,6 +51,27 @@ Contest normals(const BenchCloud& cloud) {
             {peer, [state, answer] { return answer(state->points->normals_); }}};
 }
 
+// Of all points; Open3D's rows are scaled otherwise, so their values aren't compared.
+Contest fpfh(const BenchCloud& cloud) {
+    struct State {
+        std::shared_ptr<open3d::geometry::PointCloud> points;
+        std::shared_ptr<open3d::pipelines::registration::Feature> rows;
+        LocalDescriptors ours;
+    };
+    auto state = std::make_shared<State>();
+    state->points = open3d_cloud(cloud.cloud);
+    const double radius = 15.0 * cloud.mr;
+    const auto ours = [state, radius, &cloud] {
+        state->ours = describe_fpfh(cloud.cloud, {.radius = static_cast<float>(radius)});
+    };
+    const auto peer = [state, radius] {
+        state->rows = open3d::pipelines::registration::ComputeFPFHFeature(
+            *state->points, open3d::geometry::KDTreeSearchParamRadius(radius));
+    };
+    return {{ours, [state] { return state->ours.rows; }},
+            {peer, [] { return std::vector<float>(); }}};
+}
+
 // Point to plane, until it is as exact as ours; the target's normals included, as in ours.
 Contest registration(const BenchCloud& cloud) {
     namespace o3d = open3d::pipelines::registration;
@@ -58,9 +81,10 @@ Contest registration(const BenchCloud& cloud) {
         points->normals_.clear();
         points->EstimateNormals(
             open3d::geometry::KDTreeSearchParamKNN(CloudIcpSettings{}.neighbors));
-        const auto result = o3d::RegistrationICP(*points, *points, job->radius, job->guess.matrix(),
-                                                 o3d::TransformationEstimationPointToPlane(),
-                                                 o3d::ICPConvergenceCriteria(0.0, 1e-9, 50));
+        const auto result =
+            o3d::RegistrationICP(*points, *points, 0.15 * job->radius, job->guess.matrix(),
+                                 o3d::TransformationEstimationPointToPlane(),
+                                 o3d::ICPConvergenceCriteria(0.0, 1e-9, 50));
         job->peer.matrix() = result.transformation_;
     };
     return {{[job] { job->ours = align_clouds(job->points, job->points, job->guess); },
@@ -74,6 +98,7 @@ Contest registration(const BenchCloud& cloud) {
 std::vector<Benchmark> open3d_benchmarks() {
     omp_set_num_threads(1);
     return {{.name = "normals, k = 20", .peer = kOpen3d, .goal = 4, .prepare = normals},
+            {.name = "FPFH, all points", .peer = kOpen3d, .goal = 4, .prepare = fpfh},
             {.name = "ICP, point to plane", .peer = kOpen3d, .goal = 2, .prepare = registration}};
 }
 

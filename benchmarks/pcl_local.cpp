@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // Local descriptors at 200 keypoints, radius 15 mesh resolutions, against PCL.
+#include <pcl/features/fpfh.h>
+#include <pcl/features/pfh.h>
 #include <pcl/features/rops_estimation.h>
 #include <pcl/features/shot.h>
+#include <pcl/features/spin_image.h>
 
 #include <memory>
 
 #include "benchmark.hpp"
 #include "ostraka/cloud/kdtree.hpp"
+#include "ostraka/descriptors/fpfh.hpp"
+#include "ostraka/descriptors/pfh.hpp"
 #include "ostraka/descriptors/rops.hpp"
 #include "ostraka/descriptors/shot.hpp"
+#include "ostraka/descriptors/spin_image.hpp"
 #include "pcl_clouds.hpp"
 #include "pcl_surface.hpp"
 
 namespace ostraka::bench {
 namespace {
 
-constexpr double kRadius = 15.0;  // of the supports, in mesh resolutions
+constexpr double kRadius = 15.0;           // of the supports, in mesh resolutions
+constexpr std::size_t kPfhKeypoints = 20;  // PCL takes seconds for 200
 
 template <class Output>
 struct State {
@@ -93,6 +100,65 @@ Contest rops(const BenchCloud& cloud) {
             {peer, [state] { return rows_of(state->pcl); }}};
 }
 
+Contest fpfh(const BenchCloud& cloud) {
+    auto state = std::make_shared<State<pcl::PointCloud<pcl::FPFHSignature33>>>(cloud);
+    const auto ours = [state, &cloud] {
+        const FpfhSettings settings{.radius = static_cast<float>(state->radius)};
+        state->ours = describe_fpfh(cloud.cloud, cloud.keypoints, settings).rows;
+    };
+    const auto peer = [state] {
+        pcl::FPFHEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+        estimation.setInputNormals(state->normals);
+        state->compute(estimation);
+    };
+    return {{ours, [state] { return state->ours; }},
+            {peer, [state] { return rows_of(state->pcl); }}};
+}
+
+Contest pfh(const BenchCloud& cloud) {
+    auto state = std::make_shared<State<pcl::PointCloud<pcl::PFHSignature125>>>(cloud);
+    const std::vector<Vec3f> keypoints(cloud.keypoints.begin(),
+                                       cloud.keypoints.begin() + kPfhKeypoints);
+    state->keypoints = pcl_points(keypoints);
+    const auto ours = [state, keypoints, &cloud] {
+        const PfhSettings settings{.radius = static_cast<float>(state->radius)};
+        state->ours = describe_pfh(cloud.cloud, keypoints, settings).rows;
+    };
+    const auto peer = [state] {
+        pcl::PFHEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+        estimation.setInputNormals(state->normals);
+        state->compute(estimation);
+    };
+    return {{ours, [state] { return state->ours; }},
+            {peer, [state] { return rows_of(state->pcl); }}};
+}
+
+Contest spin_image(const BenchCloud& cloud) {
+    auto state = std::make_shared<State<pcl::PointCloud<pcl::Histogram<153>>>>(cloud);
+    const auto ours = [state, &cloud] {
+        const KdTree tree(cloud.cloud.points);
+        const SpinImageSettings settings{.radius = static_cast<float>(state->radius)};
+        state->ours = describe_spin_images(cloud.cloud, tree, cloud.keypoints, settings).rows;
+    };
+    // PCL takes the axes from the normals of the input, so keypoints are indices into it.
+    const auto indices = pcl::make_shared<pcl::Indices>();
+    const std::size_t count = cloud.cloud.size();
+    for (std::size_t k = 0; k < cloud.keypoints.size(); ++k) {
+        indices->push_back(static_cast<int>(k * count / cloud.keypoints.size()));
+    }
+    const auto peer = [state, indices] {
+        pcl::SpinImageEstimation<pcl::PointXYZ, pcl::Normal, pcl::Histogram<153>> estimation(8, 0);
+        estimation.setInputCloud(state->points);
+        estimation.setInputNormals(state->normals);
+        estimation.setIndices(indices);
+        estimation.setRadiusSearch(state->radius);
+        estimation.setSearchMethod(PclTree::Ptr(new PclTree));
+        estimation.compute(state->pcl);
+    };
+    return {{ours, [state] { return state->ours; }},
+            {peer, [state] { return rows_of(state->pcl); }}};
+}
+
 }  // namespace
 
 std::vector<Benchmark> pcl_local_benchmarks() {
@@ -104,6 +170,13 @@ std::vector<Benchmark> pcl_local_benchmarks() {
                     .goal = 10,
                     .in_mean = true,
                     .prepare = rops});
+    list.push_back({.name = "FPFH, 200 keypoints",
+                    .peer = kPcl,
+                    .goal = 40,
+                    .in_mean = true,
+                    .prepare = fpfh});
+    list.push_back({.name = "PFH, 20 keypoints", .peer = kPcl, .prepare = pfh});
+    list.push_back({.name = "spin images, 200 keypoints", .peer = kPcl, .prepare = spin_image});
     return list;
 }
 

@@ -12,6 +12,7 @@
 #include "ostraka/base/error.hpp"
 #include "ostraka/base/stopwatch.hpp"
 #include "ostraka/io/atomic_file.hpp"
+#include "ostraka/library/bags.hpp"
 #include "ostraka/library/build.hpp"
 #include "ostraka/library/library_file.hpp"
 
@@ -26,6 +27,7 @@ struct BuildOptions {
     std::string fractions;
     std::string descriptors;
     std::string shard;
+    bool bag_of_words = false;
     LibrarySettings settings;
 };
 
@@ -163,7 +165,8 @@ void run_build(BuildOptions& options) {
     settings.unit = require_unit(options.unit, options.unit.empty() ? size_hint(models) : "");
     settings.views.sensor.seed = settings.seed;
     models = models_of_shard(std::move(models), shard, settings);
-    const ModelLibrary library = build_library(models, settings, progress_bar());
+    ModelLibrary library = build_library(models, settings, progress_bar());
+    if (options.bag_of_words) make_bags(library);
     save_library(library, options.output);
     say_summary(library);
     say(fmt::format("{}: {} models, {} entries, sampling {:.4g} {}, {:.1f} MB, {:.1f} s",
@@ -205,6 +208,9 @@ void add_build(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--seed", settings.seed, "seed of every random step")
         ->capture_default_str();
+    command->add_flag("--bag-of-words", options->bag_of_words,
+                      "also learn a codebook of local descriptors, for `classify --descriptor "
+                      "bag_of_words`");
     command->add_option("--shard", options->shard,
                         "build the i-th of n shares of the models, as 2/4, for `ostraka merge`: "
                         "give every shard all models");

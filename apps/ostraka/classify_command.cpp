@@ -92,10 +92,10 @@ void add_classify(CLI::App& app) {
              "unit of the numbers in the segments (default: the library's)");
     add_viewpoint(*command, options->viewpoint);
     command
-        ->add_option(
-            "--descriptor", options->descriptor,
-            "vfh, esf, gasd, shot, rops (whole piece); keypoints (local SHOT that agree on "
-            "a pose); fused: all together")
+        ->add_option("--descriptor", options->descriptor,
+                     "vfh, esf, gasd, shot, rops, bag_of_words (whole piece); keypoints (local "
+                     "SHOT that agree on "
+                     "a pose); fused: all together")
         ->capture_default_str();
     command->add_option("--k", options->k, "nearest entries that vote")
         ->capture_default_str()

@@ -39,7 +39,7 @@ void run_segments(SegmentOptions& options) {
     Json results = Json::array();
     std::vector<std::vector<std::string>> rows = {{"library", "noise mr", "segments",
                                                    "mean visible", "vfh", "esf", "gasd", "shot",
-                                                   "rops", "keypoints", "fused"}};
+                                                   "rops", "bow", "keypoints", "fused"}};
     for (const std::string& path : options.libraries) {
         const ModelLibrary library = load_library(path);
         const EntryIndex index(library, parse_metric(options.metric));
@@ -57,7 +57,8 @@ void run_segments(SegmentOptions& options) {
                                             std::to_string(segments.size()),
                                             fmt::format("{:.2f}", visible)};
             for (std::size_t c = 4; c < rows.front().size(); ++c) {
-                const auto it = rates.find(rows.front()[c]);
+                const std::string& name = rows.front()[c];
+                const auto it = rates.find(name == "bow" ? "bag_of_words" : name);
                 row.push_back(it == rates.end() ? "-" : fmt::format("{:.3f}", it->second));
             }
             rows.push_back(row);

@@ -116,6 +116,26 @@ TEST(LargestGroup, OfAnySubsetAgreesWithBruteForce) {
     }
 }
 
+TEST(LargestGroups, OfNestedSubsetsAreTheLargestGroupOfEach) {
+    const std::vector<Vec3f> points = test_clouds::in_box(400, 11);
+    const ProximityGraph graph = proximity_graph(points, 0.25);
+    std::vector<std::uint8_t> level(points.size());
+    for (std::size_t i = 0; i < level.size(); ++i) {
+        level[i] = static_cast<std::uint8_t>(4.9F * std::abs(points[i].x()));  // some in no subset
+    }
+    const auto groups = largest_groups(graph, level, 4);
+    ASSERT_EQ(groups.size(), 4U);
+    for (std::size_t l = 0; l < 4; ++l) {
+        std::vector<std::uint32_t> subset;
+        for (std::uint32_t i = 0; i < level.size(); ++i) {
+            if (level[i] <= l) subset.push_back(i);
+        }
+        EXPECT_EQ(groups[l], largest_group(graph, subset)) << l;
+        EXPECT_GT(groups[l].size(), 1U);
+    }
+    EXPECT_EQ(largest_groups(graph, std::vector<std::uint8_t>(points.size(), 9), 2)[1].size(), 0U);
+}
+
 TEST(LargestGroup, OfEquallyLargeOnesHasTheSmallestIndex) {
     const std::vector<Vec3f> points = {{0, 0, 0}, {9, 0, 0}, {9.1F, 0, 0}, {0.1F, 0, 0}};
     const ProximityGraph graph = proximity_graph(points, 1.0);

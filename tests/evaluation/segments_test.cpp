@@ -69,11 +69,15 @@ TEST(Segments, SubpartsBeatFullViewsOnBologna) {
     ASSERT_GT(segments.size(), 150U);
     const auto with_subparts = recognition_rates(EntryIndex(subparts), segments, 1);
     const auto with_views = recognition_rates(EntryIndex(views), segments, 1);
-    for (const char* name : {"vfh", "esf", "gasd", "shot", "rops", "fused"}) {
+    for (const char* name : {"vfh", "esf", "gasd", "shot", "rops"}) {
         EXPECT_GT(with_subparts.at(name), with_views.at(name)) << name;
         RecordProperty(name, std::to_string(with_views.at(name)) + " -> " +
                                  std::to_string(with_subparts.at(name)));
     }
+    // Keypoints, and with them the fused ranking, hardly depend on the entries: both are near 1.
+    EXPECT_GT(with_subparts.at("keypoints"), 0.9);
+    EXPECT_GT(with_subparts.at("fused"), 0.9);
+    EXPECT_GT(with_subparts.at("fused"), with_subparts.at("shot") + 0.2);
 }
 
 }  // namespace

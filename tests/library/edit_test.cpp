@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/library/bags.hpp"
 #include "ostraka/library/build.hpp"
 #include "ostraka/library/library_file.hpp"
 #include "support/simple_models.hpp"
@@ -86,6 +87,16 @@ TEST_F(Edit, RenamingMovesAModelToItsPlaceAndBack) {
     EXPECT_THROW(rename_model(*both_, name, both_->models[1].name), InvalidInput);
     EXPECT_THROW(rename_model(*both_, name, ""), InvalidInput);
     EXPECT_THROW(rename_model(*both_, "no such model", "a"), InvalidInput);
+}
+
+TEST_F(Edit, BagsOfWordsAreMadeAnewWhereTheFirstLibraryHasThem) {
+    ModelLibrary at_once = *both_;
+    make_bags(at_once);
+    ModelLibrary first = *first_;
+    make_bags(first);
+    EXPECT_EQ(bytes_of(merge_libraries({first, *second_})), bytes_of(at_once));
+    EXPECT_EQ(bytes_of(remove_model(at_once, second_->models[0].name)), bytes_of(first));
+    EXPECT_EQ(merge_libraries({*second_, first}).codebook.size(), 0U);
 }
 
 TEST_F(Edit, MergingNamesTheSettingThatDiffers) {

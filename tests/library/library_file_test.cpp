@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/library/library_file.hpp"
+#include "ostraka/library/bags.hpp"
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <fstream>
 #include <string>
@@ -36,8 +38,18 @@ class LibraryFile : public ::testing::Test {
     static void write(const fs::path& file, const std::string& bytes) {
         std::ofstream(file, std::ios::binary) << bytes;
     }
+    static void change(const fs::path& file, const char* sql) {
+        sqlite3* database = nullptr;
+        ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+        EXPECT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK);
+        sqlite3_close(database);
+    }
     static const ModelLibrary& library() {
-        static const ModelLibrary built = build_library(simple_models(), quick_settings());
+        static const ModelLibrary built = [] {
+            ModelLibrary library = build_library(simple_models(), quick_settings());
+            make_bags(library);
+            return library;
+        }();
         return built;
     }
 
@@ -70,6 +82,41 @@ TEST_F(LibraryFile, ReadsBackWhatWasBuilt) {
     }
     for (std::size_t t = 0; t < back.tables.size(); ++t) {
         EXPECT_EQ(back.tables[t].rows, library().tables[t].rows);
+    }
+    EXPECT_GT(back.codebook.size(), 0U);
+    EXPECT_EQ(back.codebook.words, library().codebook.words);
+    EXPECT_EQ(back.bags, library().bags);
+}
+
+TEST_F(LibraryFile, ALibraryWithoutACodebookIsReadBack) {
+    ModelLibrary bare = library();
+    bare.codebook = {};
+    bare.bags.clear();
+    save_library(bare, path("a.ostraka"));
+    const ModelLibrary back = load_library(path("a.ostraka"));
+    EXPECT_EQ(back.codebook.size(), 0U);
+    EXPECT_TRUE(back.bags.empty());
+}
+
+TEST_F(LibraryFile, FilesOfBeforeCodebooksAreRead) {
+    save_library(library(), path("a.ostraka"));
+    change(path("a.ostraka"),
+           "DROP TABLE codebook; DELETE FROM descriptor WHERE name='bag_of_words'");
+    const ModelLibrary back = load_library(path("a.ostraka"));
+    EXPECT_EQ(back.codebook.size(), 0U);
+    EXPECT_TRUE(back.bags.empty());
+    EXPECT_EQ(back.tables.front().rows, library().tables.front().rows);
+}
+
+TEST_F(LibraryFile, ADamagedCodebookIsRefused) {
+    for (const char* sql :
+         {"DELETE FROM codebook WHERE word=3", "UPDATE codebook SET row=x'00000000' WHERE word=0",
+          "DELETE FROM descriptor WHERE name='bag_of_words' AND entry=1",
+          "UPDATE codebook SET row=zeroblob(1404)||x'0000c07f' WHERE word=2",
+          "UPDATE codebook SET row=CAST(zeroblob(1404)||x'0000c07f' AS BLOB)"}) {
+        save_library(library(), path("a.ostraka"));
+        change(path("a.ostraka"), sql);
+        EXPECT_THROW(load_library(path("a.ostraka")), FormatError) << sql;
     }
 }
 

@@ -6,32 +6,12 @@
 #include <numeric>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/cloud/disjoint_sets.hpp"
 #include "ostraka/cloud/kdtree.hpp"
 #include "ostraka/cloud/point_columns.hpp"
 
 namespace ostraka {
 namespace {
-
-class DisjointSets {
-  public:
-    explicit DisjointSets(std::size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), 0U);
-    }
-    std::uint32_t find(std::uint32_t item) {
-        while (parent_[item] != item) item = parent_[item] = parent_[parent_[item]];
-        return item;
-    }
-    // The smaller root wins, so the result doesn't depend on the order of unions.
-    void unite(std::uint32_t a, std::uint32_t b) {
-        if (parent_[a] == parent_[b]) return;  // most pairs, once a group has formed
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
 
 // The groups of at least `min_size` points. @param root_of  of point i: equal within a group, below
 // `count`.

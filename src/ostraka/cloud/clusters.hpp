@@ -35,6 +35,13 @@ ProximityGraph proximity_graph(std::span<const Vec3f> points, double tolerance);
 std::vector<std::uint32_t> largest_group(const ProximityGraph& graph,
                                          std::span<const std::uint32_t> indices);
 
+/// The same for nested subsets at once, each step costing only what is new.
+/// @param level   per point: the first subset that holds it; `levels` or more: none does.
+/// @return for each level l, the largest group among the points of level 0 to l.
+std::vector<std::vector<std::uint32_t>> largest_groups(const ProximityGraph& graph,
+                                                       std::span<const std::uint8_t> level,
+                                                       std::size_t levels);
+
 struct SmoothnessSettings {
     double tolerance = 0.0;       ///< distance that joins two points, in the cloud's unit
     double max_angle = 0.2;       ///< radians between the normals of joined points

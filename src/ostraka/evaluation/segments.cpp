@@ -2,6 +2,7 @@
 #include "ostraka/evaluation/segments.hpp"
 
 #include "ostraka/base/parallel.hpp"
+#include "ostraka/library/bags.hpp"
 
 namespace ostraka {
 namespace {
@@ -49,6 +50,7 @@ std::map<std::string, double> recognition_rates(const EntryIndex& index,
     for (const DescriptorTable& table : index.library().tables) {
         names.emplace_back(descriptor_name(table.descriptor));
     }
+    if (index.library().codebook.size() > 0) names.emplace_back(kBagOfWords);
     std::vector<std::vector<int>> right(names.size(), std::vector<int>(segments.size(), 0));
     parallel_for(segments.size(), [&](std::size_t s) {
         const PreparedSegment prepared =
@@ -56,7 +58,9 @@ std::map<std::string, double> recognition_rates(const EntryIndex& index,
         if (prepared.piece.size() < kMinPoints) return;
         const SegmentEvidence evidence = gather_evidence(index, prepared);
         for (std::size_t n = 0; n < names.size(); ++n) {
-            const auto ranking = rank_models(index, evidence, names[n], k);
+            const auto ranking = names[n] == kBagOfWords
+                                     ? classify(index, prepared, names[n], k)
+                                     : rank_models(index, evidence, names[n], k);
             right[n][s] = !ranking.empty() && ranking.front().model == segments[s].model ? 1 : 0;
         }
     });

@@ -32,7 +32,7 @@ std::vector<LabeledSegment> simulate_segments(const SceneModels& models,
                                               const Progress& progress = {});
 
 /// Share of segments whose first-ranked model is right, for each descriptor of the library,
-/// "keypoints" and "fused".
+/// "bag_of_words" if it has a codebook, "keypoints" and "fused".
 /// @param segments  their model indices count the library's models.
 std::map<std::string, double> recognition_rates(const EntryIndex& index,
                                                 std::span<const LabeledSegment> segments,

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/library/bags.hpp"
 #include "ostraka/library/build.hpp"
 #include "ostraka/library/settings_text.hpp"
 
@@ -63,7 +64,7 @@ void require_distinct_names(const std::vector<Part>& sorted) {
 }
 
 // Models in the order of their names, as build_library() leaves them.
-ModelLibrary join(const LibrarySettings& settings, std::vector<Part> parts) {
+ModelLibrary join(const LibrarySettings& settings, std::vector<Part> parts, bool with_bags) {
     std::sort(parts.begin(), parts.end(),
               [](const Part& a, const Part& b) { return a.model.name < b.model.name; });
     require_distinct_names(parts);
@@ -83,6 +84,7 @@ ModelLibrary join(const LibrarySettings& settings, std::vector<Part> parts) {
         }
         library.models.push_back(std::move(part.model));
     }
+    if (with_bags) make_bags(library);  // their words depend on all models
     return library;
 }
 
@@ -98,13 +100,14 @@ Part& find_part(std::vector<Part>& parts, const std::string& name) {
 ModelLibrary merge_libraries(std::vector<ModelLibrary> libraries) {
     if (libraries.empty()) throw InvalidInput("nothing to merge");
     const LibrarySettings settings = libraries.front().settings;
+    const bool with_bags = libraries.front().codebook.size() > 0;
     std::vector<Part> all;
     for (ModelLibrary& library : libraries) {
         require_equal_settings(settings, library.settings);
         std::vector<Part> parts = split(std::move(library));
         std::move(parts.begin(), parts.end(), std::back_inserter(all));
     }
-    return join(settings, std::move(all));
+    return join(settings, std::move(all), with_bags);
 }
 
 ModelLibrary add_models(ModelLibrary library, std::span<const ModelSource> models,
@@ -125,19 +128,21 @@ ModelLibrary add_models(ModelLibrary library, std::span<const ModelSource> model
 
 ModelLibrary remove_model(ModelLibrary library, const std::string& name) {
     const LibrarySettings settings = library.settings;
+    const bool with_bags = library.codebook.size() > 0;
     std::vector<Part> parts = split(std::move(library));
     find_part(parts, name);
     if (parts.size() == 1) throw InvalidInput("a library needs at least one model");
     std::erase_if(parts, [&](const Part& part) { return part.model.name == name; });
-    return join(settings, std::move(parts));
+    return join(settings, std::move(parts), with_bags);
 }
 
 ModelLibrary rename_model(ModelLibrary library, const std::string& from, const std::string& to) {
     if (to.empty()) throw InvalidInput("a model's name must not be empty");
     const LibrarySettings settings = library.settings;
+    const bool with_bags = library.codebook.size() > 0;
     std::vector<Part> parts = split(std::move(library));
     find_part(parts, from).model.name = to;
-    return join(settings, std::move(parts));
+    return join(settings, std::move(parts), with_bags);
 }
 
 }  // namespace ostraka

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Libraries from libraries: merged, extended, shortened. What depends on one model only is never
-// worked out again, and the result is that of building all models at once.
+// worked out again, and the result is that of building all models at once. Bags of
+// words (bags.hpp) depend on all models: where the (first) library has them, they are made anew.
 #pragma once
 
 #include <span>

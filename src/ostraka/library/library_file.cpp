@@ -6,6 +6,7 @@
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/io/atomic_file.hpp"
+#include "ostraka/library/bags.hpp"
 #include "ostraka/library/encoding.hpp"
 #include "ostraka/library/settings_text.hpp"
 #include "ostraka/library/sqlite.hpp"
@@ -28,6 +29,7 @@ CREATE TABLE entry(id INTEGER PRIMARY KEY, model INTEGER NOT NULL REFERENCES mod
     viewpoint BLOB NOT NULL, frame BLOB NOT NULL, ambiguity INTEGER NOT NULL, points BLOB NOT NULL);
 CREATE TABLE descriptor(name TEXT NOT NULL, entry INTEGER NOT NULL REFERENCES entry(id),
     row BLOB NOT NULL, PRIMARY KEY(name, entry)) WITHOUT ROWID;
+CREATE TABLE codebook(word INTEGER PRIMARY KEY, row BLOB NOT NULL);
 )sql";
 
 template <class T>
@@ -163,18 +165,32 @@ void save_entries(Database& database, const ModelLibrary& library) {
     }
 }
 
-void save_descriptors(Database& database, const ModelLibrary& library) {
+void save_rows(Database& database, std::string_view name, std::span<const float> rows,
+               std::size_t length) {
     Statement insert(database, "INSERT INTO descriptor VALUES(?,?,?)");
+    for (std::size_t i = 0; i < rows.size() / length; ++i) {
+        insert.bind(1, std::string(name));
+        insert.bind(2, static_cast<std::int64_t>(i));
+        insert.bind_blob(3, rows.subspan(i * length, length));
+        insert.step();
+        insert.reset();
+    }
+}
+
+void save_descriptors(Database& database, const ModelLibrary& library) {
     for (const DescriptorTable& table : library.tables) {
-        const std::size_t length = descriptor_length(table.descriptor);
-        const std::string name(descriptor_name(table.descriptor));
-        for (std::size_t i = 0; i < library.entries.size(); ++i) {
-            insert.bind(1, name);
-            insert.bind(2, static_cast<std::int64_t>(i));
-            insert.bind_blob(3, as_span(table.rows).subspan(i * length, length));
-            insert.step();
-            insert.reset();
-        }
+        save_rows(database, descriptor_name(table.descriptor), table.rows,
+                  descriptor_length(table.descriptor));
+    }
+    const Codebook& codebook = library.codebook;
+    if (codebook.size() == 0) return;
+    save_rows(database, kBagOfWords, library.bags, codebook.size());
+    Statement insert(database, "INSERT INTO codebook VALUES(?,?)");
+    for (std::size_t w = 0; w < codebook.size(); ++w) {
+        insert.bind(1, static_cast<std::int64_t>(w));
+        insert.bind_blob(2, as_span(codebook.words).subspan(w * codebook.length, codebook.length));
+        insert.step();
+        insert.reset();
     }
 }
 
@@ -243,35 +259,55 @@ Entry load_entry_row(const Statement& row, const std::vector<Model>& models) {
     return entry;
 }
 
-DescriptorTable load_table(Database& database, const AnyDescriptor& descriptor,
-                           std::size_t entries) {
-    DescriptorTable table{descriptor, {}};
+void append_finite(std::vector<float>& rows, const std::vector<float>& row) {
+    for (const float value : row) {
+        if (!std::isfinite(value)) throw InvalidInput("a descriptor is not finite");
+    }
+    rows.insert(rows.end(), row.begin(), row.end());
+}
+
+std::vector<float> load_rows(Database& database, std::string_view name, std::size_t length,
+                             std::size_t entries) {
+    std::vector<float> rows;
     Statement select_rows(database,
                           "SELECT entry, row FROM descriptor WHERE name=? ORDER BY entry");
-    select_rows.bind(1, std::string(descriptor_name(descriptor)));
+    select_rows.bind(1, std::string(name));
     std::size_t next = 0;
     for (; select_rows.step(); ++next) {
         const std::vector<float> row = select_rows.blob<float>(1);
-        if (select_rows.integer(0) != static_cast<std::int64_t>(next) ||
-            row.size() != descriptor_length(descriptor)) {
-            throw InvalidInput(fmt::format("descriptor {} of entry {} is damaged",
-                                           descriptor_name(descriptor), next));
+        if (select_rows.integer(0) != static_cast<std::int64_t>(next) || row.size() != length) {
+            throw InvalidInput(fmt::format("descriptor {} of entry {} is damaged", name, next));
         }
-        for (const float value : row) {
-            if (!std::isfinite(value)) throw InvalidInput("a descriptor is not finite");
-        }
-        table.rows.insert(table.rows.end(), row.begin(), row.end());
+        append_finite(rows, row);
     }
     if (next != entries) {
-        throw InvalidInput(fmt::format("descriptor {} has {} rows for {} entries",
-                                       descriptor_name(descriptor), next, entries));
+        throw InvalidInput(
+            fmt::format("descriptor {} has {} rows for {} entries", name, next, entries));
     }
-    return table;
+    return rows;
 }
 
 std::int64_t pragma(Database& database, const char* sql) {
     Statement statement(database, sql);
     return statement.step() ? statement.integer(0) : 0;
+}
+
+// Files of before there were codebooks have no such table.
+Codebook load_codebook(Database& database) {
+    Codebook codebook{kShotLength, {}};
+    if (pragma(database, "SELECT count(*) FROM sqlite_master WHERE name='codebook'") == 0) {
+        return codebook;
+    }
+    Statement words(database, "SELECT word, row FROM codebook ORDER BY word");
+    while (words.step()) {
+        const std::vector<float> word = words.blob<float>(1);
+        if (words.integer(0) != static_cast<std::int64_t>(codebook.size()) ||
+            word.size() != codebook.length) {
+            throw InvalidInput(fmt::format("word {} of the codebook is damaged", codebook.size()));
+        }
+        append_finite(codebook.words, word);
+    }
+    return codebook;
 }
 
 ModelLibrary load_content(Database& database) {
@@ -290,7 +326,14 @@ ModelLibrary load_content(Database& database) {
     Statement entries(database, "SELECT * FROM entry ORDER BY id");
     while (entries.step()) library.entries.push_back(load_entry_row(entries, library.models));
     for (const AnyDescriptor& descriptor : library.settings.descriptors) {
-        library.tables.push_back(load_table(database, descriptor, library.entries.size()));
+        library.tables.push_back(
+            {descriptor, load_rows(database, descriptor_name(descriptor),
+                                   descriptor_length(descriptor), library.entries.size())});
+    }
+    library.codebook = load_codebook(database);
+    if (library.codebook.size() > 0) {
+        library.bags =
+            load_rows(database, kBagOfWords, library.codebook.size(), library.entries.size());
     }
     if (library.models.empty()) throw InvalidInput("the library has no models");
     return library;

@@ -8,6 +8,7 @@
 
 #include "ostraka/base/unit.hpp"
 #include "ostraka/cloud/principal_frame.hpp"
+#include "ostraka/descriptors/bag_of_words.hpp"
 #include "ostraka/library/library_settings.hpp"
 #include "ostraka/mesh/shape.hpp"
 
@@ -71,6 +72,8 @@ struct ModelLibrary {
     std::vector<Model> models;            ///< in the order of their names
     std::vector<Entry> entries;           ///< grouped by model, in the order of `models`
     std::vector<DescriptorTable> tables;  ///< one for each of settings.descriptors
+    Codebook codebook;        ///< of the models' keypoint rows (bags.hpp); may have no words
+    std::vector<float> bags;  ///< entries x codebook.size(): its words in each entry, sum 1
 };
 
 /// The table of the descriptor with that name; nullptr if the library has none.

@@ -14,6 +14,7 @@
 #include "ostraka/cloud/normals.hpp"
 #include "ostraka/cloud/range_smoothing.hpp"
 #include "ostraka/cloud/resample.hpp"
+#include "ostraka/library/bags.hpp"
 #include "ostraka/library/consensus.hpp"
 
 namespace ostraka {
@@ -32,6 +33,16 @@ std::vector<float> distances_to_all(const std::vector<float>& rows, std::span<co
     for (std::size_t i = 0; i < result.size(); ++i) {
         const auto other = std::span<const float>(rows).subspan(i * row.size(), row.size());
         result[i] = distance(other, row, metric);
+    }
+    return result;
+}
+
+std::vector<float> comparable_rows(std::span<const float> rows, std::size_t length, Metric metric) {
+    std::vector<float> result;
+    result.reserve(rows.size());
+    for (std::size_t i = 0; i < rows.size(); i += length) {
+        const std::vector<float> row = comparable_row(rows.subspan(i, length), metric);
+        result.insert(result.end(), row.begin(), row.end());
     }
     return result;
 }
@@ -113,14 +124,10 @@ EntryIndex::EntryIndex(const ModelLibrary& library, std::optional<Metric> metric
         const DescriptorTable& table = library.tables[t];
         const std::size_t length = descriptor_length(table.descriptor);
         metrics_[t] = metric.value_or(best_metric(table.descriptor));
-        rows_[t].reserve(table.rows.size());
-        for (std::size_t i = 0; i < library.entries.size(); ++i) {
-            const std::vector<float> row = comparable_row(
-                std::span<const float>(table.rows).subspan(i * length, length), metrics_[t]);
-            rows_[t].insert(rows_[t].end(), row.begin(), row.end());
-        }
+        rows_[t] = comparable_rows(table.rows, length, metrics_[t]);
         scales_[t] = table_scale(library, rows_[t], length, metrics_[t]);
     });
+    bags_ = comparable_rows(library.bags, library.codebook.size(), Metric::hellinger);
 }
 
 std::vector<float> EntryIndex::distances(std::size_t table, std::span<const float> row) const {
@@ -141,6 +148,12 @@ std::vector<float> EntryIndex::fused_distances(const PointCloud& cloud) const {
         all[t] = distances(t, describe(cloud, library_->tables[t].descriptor));
     }
     return fused(all);
+}
+
+std::vector<float> EntryIndex::bag_distances(const PointCloud& cloud) const {
+    if (bags_.empty()) throw InvalidInput("the library has no codebook for a bag of words");
+    const std::vector<float> bag = describe_bag(cloud, *library_, kSegmentBagKeypoints);
+    return distances_to_all(bags_, comparable_row(bag, Metric::hellinger), Metric::hellinger);
 }
 
 std::vector<EntryMatch> nearest_entries(std::span<const float> distances, std::size_t k) {
@@ -223,6 +236,9 @@ std::vector<RankedModel> classify(const EntryIndex& index, const PreparedSegment
         return rank_models(index, gather_evidence(index, segment), descriptor, k);
     }
     if (segment.empty()) throw InvalidInput("the segment has fewer than 3 points");
+    if (descriptor == kBagOfWords) {
+        return rank_models(library, index.bag_distances(segment.piece), k);
+    }
     const std::size_t table = table_number(library, descriptor);
     const auto row = describe(segment.piece, library.tables[table].descriptor);
     return rank_models(library, index.distances(table, row), k);

@@ -28,8 +28,8 @@ struct RankedModel {
     std::uint32_t model = kNoIndex;  ///< index into ModelLibrary::models
     double score = 0.0;  ///< votes / k; "keypoints": the consensus; "fused": 5/7 of it, as a share
                          ///< of the highest, and 2/7 likeness by global descriptors. 0 to 1
-    int votes = 0;    ///< entries of this model among the k nearest
-    EntryMatch best;  ///< its nearest entry
+    int votes = 0;       ///< entries of this model among the k nearest
+    EntryMatch best;     ///< its nearest entry
 };
 
 /// All rows of a library, ready to be searched. Exact; const and safe from many threads.
@@ -49,12 +49,17 @@ class EntryIndex {
     std::vector<float> fused(std::span<const std::vector<float>> distances) const;
     /// The same of a piece. @param cloud  with normals.
     std::vector<float> fused_distances(const PointCloud& cloud) const;
+    /// Distance of a piece's bag of words (bags.hpp) from every entry's. @param cloud  with
+    /// normals.
+    /// @throws InvalidInput if the library has no codebook.
+    std::vector<float> bag_distances(const PointCloud& cloud) const;
 
   private:
     const ModelLibrary* library_;
     std::vector<Metric> metrics_;           // per table
     std::vector<std::vector<float>> rows_;  // per table: entries x length, comparable_row()s
     std::vector<float> scales_;             // per table
+    std::vector<float> bags_;               // entries x words, comparable_row()s
     KeypointIndex keypoints_;
 };
 
@@ -87,12 +92,13 @@ struct SegmentEvidence {
 SegmentEvidence gather_evidence(const EntryIndex& index, const PreparedSegment& segment);
 
 /// Every model with an entry, best first.
-/// @param descriptor  as for classify().
+/// @param descriptor  as for classify(), but "bag_of_words", which is not gathered.
 std::vector<RankedModel> rank_models(const EntryIndex& index, const SegmentEvidence& evidence,
                                      std::string_view descriptor, std::size_t k);
 
 /// Ranks the models for a segment.
-/// @param descriptor  a name in the library; "keypoints": local descriptors only; or "fused".
+/// @param descriptor  a name in the library; "keypoints": local descriptors only; "bag_of_words":
+///                    which words they are, wherever they lie; or "fused", without the words.
 /// @throws InvalidInput if the library has no such descriptor, or the segment is empty().
 std::vector<RankedModel> classify(const EntryIndex& index, const PreparedSegment& segment,
                                   std::string_view descriptor = "fused", std::size_t k = 1);

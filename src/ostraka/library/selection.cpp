@@ -35,21 +35,28 @@ class OverlapRow {
     std::vector<int> sizes_;
 };
 
-std::vector<std::uint32_t> drop_redundant(std::span<const ElementSet> candidates,
-                                          double max_overlap) {
-    std::vector<std::uint32_t> kept;
+// Candidates that differ, and how many candidates each of them stands for, itself included.
+struct Ground {
+    std::vector<std::uint32_t> candidates;
+    std::vector<double> weights;
+};
+
+Ground drop_redundant(std::span<const ElementSet> candidates, double max_overlap) {
+    Ground ground;
     OverlapRow kept_sets;
     std::vector<float> with_kept;
     for (std::uint32_t i = 0; i < candidates.size(); ++i) {
         kept_sets.with(candidates[i], with_kept);
-        const bool redundant = std::any_of(with_kept.begin(), with_kept.end(), [&](float value) {
-            return double{value} >= max_overlap;
-        });
-        if (redundant) continue;
-        kept.push_back(i);
+        const auto most = std::max_element(with_kept.begin(), with_kept.end());
+        if (most != with_kept.end() && double{*most} >= max_overlap) {
+            ground.weights[static_cast<std::size_t>(most - with_kept.begin())] += 1.0;
+            continue;
+        }
+        ground.candidates.push_back(i);
+        ground.weights.push_back(1.0);
         kept_sets.add(candidates[i]);
     }
-    return kept;
+    return ground;
 }
 
 // A candidate with an upper bound of its gain; ties go to the earlier candidate.
@@ -66,31 +73,32 @@ struct Bound {
 
 SelectionResult select_entries(std::span<const ElementSet> candidates,
                                const SelectionSettings& settings) {
-    const std::vector<std::uint32_t> ground = drop_redundant(candidates, settings.max_overlap);
-    std::vector<float> covered(candidates.size(), 0.0F);
+    const Ground ground = drop_redundant(candidates, settings.max_overlap);
+    const std::size_t count = ground.candidates.size();
+    std::vector<float> covered(count, 0.0F);
     OverlapRow all;
-    for (const ElementSet& candidate : candidates) all.add(candidate);
+    for (const std::uint32_t i : ground.candidates) all.add(candidates[i]);
     const auto gain_of = [&](std::uint32_t candidate, std::vector<float>& row) {
         all.with(candidates[candidate], row);
         double gain = 0.0;
         for (std::size_t o = 0; o < covered.size(); ++o) {
-            gain += double{std::max(0.0F, row[o] - covered[o])};
+            gain += ground.weights[o] * double{std::max(0.0F, row[o] - covered[o])};
         }
         return gain;
     };
-    std::vector<double> gains(ground.size());
+    std::vector<double> gains(count);
     parallel_for(
-        ground.size(),
+        count,
         [&](std::size_t i) {
             thread_local std::vector<float> row;
-            gains[i] = gain_of(ground[i], row);
+            gains[i] = gain_of(ground.candidates[i], row);
         },
         32);
     std::priority_queue<Bound> queue;
-    for (std::size_t i = 0; i < ground.size(); ++i) queue.push({gains[i], ground[i], 0});
+    for (std::size_t i = 0; i < count; ++i) queue.push({gains[i], ground.candidates[i], 0});
     std::vector<float> row;
     SelectionResult result;
-    result.redundant = candidates.size() - ground.size();
+    result.redundant = candidates.size() - count;
     const auto budget = static_cast<std::size_t>(std::max(0, settings.budget));
     while (!queue.empty() && result.chosen.size() < budget) {
         const Bound top = queue.top();
@@ -106,8 +114,10 @@ SelectionResult select_entries(std::span<const ElementSet> candidates,
         result.chosen.push_back(top.candidate);
     }
     std::sort(result.chosen.begin(), result.chosen.end());
-    result.beyond_budget = ground.size() - result.chosen.size();
-    for (const float value : covered) result.coverage += double{value};
+    result.beyond_budget = count - result.chosen.size();
+    for (std::size_t o = 0; o < count; ++o) {
+        result.coverage += ground.weights[o] * double{covered[o]};
+    }
     if (!candidates.empty()) result.coverage /= static_cast<double>(candidates.size());
     return result;
 }

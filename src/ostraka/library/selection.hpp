@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chooses the entries of a model among its candidates (method, 2.5).
 //
-// First, candidates that show the same surface as an earlier one are dropped. Then up to `budget`
-// are chosen so that a random candidate, taken as a likely observation, overlaps its best entry
-// most: maximize F(S) = sum over observations o of max over e in S of overlap(e, o), a
-// facility-location function, monotone and submodular, for which the greedy choice reaches at least
-// 1 - 1/e of the best. Nemhauser, Wolsey, Fisher. An Analysis of Approximations for Maximizing
-// Submodular Set Functions. Math. Programming 14, 1978. Lazy evaluation: Minoux 1978.
+// First, candidates that show the same surface as an earlier one are dropped; the earlier one then
+// stands for them too. Then up to `budget` are chosen so that a random candidate, taken as a likely
+// observation, overlaps its best entry most: maximize F(S) = sum over kept candidates o of
+// weight(o) * max over e in S of overlap(e, o), where the weight counts the candidates that o
+// stands for. A facility-location function, monotone and submodular, for which the greedy choice
+// reaches at least 1 - 1/e of the best. Nemhauser, Wolsey, Fisher. An Analysis of Approximations
+// for Maximizing Submodular Set Functions. Math. Programming 14, 1978. Lazy evaluation: Minoux
+// 1978.
 #pragma once
 
 #include <vector>
