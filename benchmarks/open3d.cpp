@@ -84,7 +84,7 @@ Contest registration(const BenchCloud& cloud) {
         const auto result =
             o3d::RegistrationICP(*points, *points, 0.15 * job->radius, job->guess.matrix(),
                                  o3d::TransformationEstimationPointToPlane(),
-                                 o3d::ICPConvergenceCriteria(0.0, 1e-9, 50));
+                                 o3d::ICPConvergenceCriteria(1e-9, 1e-9, 50));
         job->peer.matrix() = result.transformation_;
     };
     return {{[job] { job->ours = align_clouds(job->points, job->points, job->guess); },

@@ -52,9 +52,8 @@ struct State {
 Contest shot(const BenchCloud& cloud) {
     auto state = std::make_shared<State<pcl::PointCloud<pcl::SHOT352>>>(cloud);
     const auto ours = [state, &cloud] {
-        const KdTree tree(cloud.cloud.points);
         const ShotSettings settings{.radius = static_cast<float>(state->radius)};
-        state->ours = describe_shot(cloud.cloud, tree, cloud.keypoints, settings).rows;
+        state->ours = describe_shot(cloud.cloud, cloud.keypoints, settings).rows;
     };
     const auto peer = [state] {
         pcl::SHOTEstimation<pcl::PointXYZ, pcl::Normal> estimation;
@@ -85,10 +84,9 @@ std::vector<float> rows_of(const Histograms& histograms) {
 Contest rops(const BenchCloud& cloud) {
     auto state = std::make_shared<State<pcl::PointCloud<pcl::Histogram<135>>>>(cloud);
     const auto ours = [state, &cloud] {
-        const KdTree tree(cloud.cloud.points);
         const auto triangles = triangulate(cloud.cloud);
         const RopsSettings settings{.radius = static_cast<float>(state->radius)};
-        state->ours = describe_rops(cloud.cloud, tree, triangles, cloud.keypoints, settings).rows;
+        state->ours = describe_rops(cloud.cloud, triangles, cloud.keypoints, settings).rows;
     };
     const auto peer = [state, edge = 4.0 * cloud.mr] {
         pcl::ROPSEstimation<pcl::PointXYZ, pcl::Histogram<135>> estimation;

@@ -2,6 +2,7 @@
 // CVFH and OUR-CVFH against PCL: the same normals, curvatures and settings. PCL's region growing
 // misses a few points (see tests/descriptors/pcl_oracle_regional_test.cpp), so rows differ with the
 // regions; they are compared only where their number is the same.
+#include <pcl/console/print.h>
 #include <pcl/features/cvfh.h>
 #include <pcl/features/our_cvfh.h>
 
@@ -88,6 +89,7 @@ Contest our_cvfh(const BenchCloud& cloud) {
 }  // namespace
 
 std::vector<Benchmark> pcl_regional_benchmarks() {
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // it reports each ambiguous frame
     return {
         {.name = "CVFH", .peer = kPcl, .prepare = cvfh},
         {.name = "OUR-CVFH", .peer = kPcl, .goal = 10, .in_mean = true, .prepare = our_cvfh},

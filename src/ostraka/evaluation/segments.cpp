@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/evaluation/segments.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <mutex>
+
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/library/bags.hpp"
 
@@ -30,15 +34,19 @@ std::vector<LabeledSegment> segments_of(const SimulatedScene& scene,
 std::vector<LabeledSegment> simulate_segments(const SceneModels& models,
                                               const SegmentSettings& settings,
                                               const Progress& progress) {
+    const auto count = static_cast<std::size_t>(std::max(0, settings.scenes));
+    std::vector<std::vector<LabeledSegment>> of_scene(count);
+    std::mutex mutex;
+    std::size_t done = 0;
+    parallel_for(count, [&](std::size_t i) {
+        const SimulatedScene scene = simulate_random_view(models, i, settings.views);
+        of_scene[i] = segments_of(scene, settings);
+        const std::scoped_lock lock(mutex);
+        report(progress, "scenes", ++done, count);
+    });
     std::vector<LabeledSegment> all;
-    for (int i = 0; i < settings.scenes; ++i) {
-        const SimulatedScene scene =
-            simulate_random_view(models, static_cast<std::uint64_t>(i), settings.views);
-        for (LabeledSegment& segment : segments_of(scene, settings)) {
-            all.push_back(std::move(segment));
-        }
-        report(progress, "scenes", static_cast<std::size_t>(i + 1),
-               static_cast<std::size_t>(settings.scenes));
+    for (std::vector<LabeledSegment>& segments : of_scene) {
+        std::move(segments.begin(), segments.end(), std::back_inserter(all));
     }
     return all;
 }

@@ -79,8 +79,7 @@ SceneKeypoints scene_keypoints(const PointCloud& cloud, const LibrarySettings& s
                                double spacing, std::size_t most) {
     const std::vector<Vec3f> points = spread(cloud, spacing * settings.sampling, most);
     const auto radius = static_cast<float>(settings.keypoint_radius * settings.sampling);
-    const KdTree tree(cloud.points);
-    const LocalDescriptors described = describe_shot(cloud, tree, points, {.radius = radius});
+    const LocalDescriptors described = describe_shot(cloud, points, {.radius = radius});
     SceneKeypoints keypoints;
     std::vector<std::uint8_t> rows;
     for (std::size_t i = 0; i < points.size(); ++i) {
