@@ -13,7 +13,7 @@
 #include <cstring>
 #include <utility>
 
-#include "ostraka/cloud/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 namespace {
@@ -64,7 +64,7 @@ __attribute__((always_inline)) inline std::size_t count_below(const float* squar
 // Measures all candidates and narrows the bracket until exactly k are below its upper end, or the
 // rounds are used up (ties).
 // @return false if the candidates don't hold the k nearest for sure.
-OSTRAKA_CLOUD_CLONES
+OSTRAKA_VECTOR_CLONES
 bool bracket_nearest(const float* x, const float* y, const float* z, float* squared,
                      std::size_t count, std::size_t padded, const Query& query, std::size_t k,
                      float guess, Bracket& bracket) {
@@ -141,7 +141,7 @@ __attribute__((always_inline)) inline void masked_offset(const float* from, floa
 
 // Sums over the candidates below the limit, into one lane of a batch: products in single precision,
 // of which each of 8 sums gets a few; these are added in double.
-OSTRAKA_CLOUD_CLONES
+OSTRAKA_VECTOR_CLONES
 void sum_below(const float* x, const float* y, const float* z, const float* squared,
                std::size_t padded, const Query& query, float limit, MomentBatch& batch,
                std::size_t lane) {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ostraka/cloud/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 namespace {
@@ -27,7 +27,7 @@ struct Solutions {
     alignas(32) std::array<double, MomentBatch::kCapacity> sure;     // 1: accurate, 0: not
 };
 
-OSTRAKA_CLOUD_CLONES
+OSTRAKA_VECTOR_CLONES
 void solve(const MomentBatch& batch, Solutions& out) {
     const double inverse = 1.0 / batch.neighbors;
     const auto& s = batch.sums;

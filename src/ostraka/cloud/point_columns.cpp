@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "ostraka/base/error.hpp"
-#include "ostraka/cloud/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 namespace {
@@ -22,7 +22,7 @@ constexpr float kWiden = 1.00001F;
 
 // Writes the slots in the runs that lie in the ball, branch-free, and how many.
 // `slots` and `squared` have room for all slots in the runs.
-OSTRAKA_CLOUD_CLONES
+OSTRAKA_VECTOR_CLONES
 std::size_t filter(const SlotRun* runs, std::size_t count, const float* x, const float* y,
                    const float* z, const float* query, float squared_radius, std::uint32_t* slots,
                    float* squared) {

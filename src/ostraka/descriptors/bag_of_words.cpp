@@ -11,8 +11,8 @@
 #include "ostraka/base/error.hpp"
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/base/random.hpp"
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/metric.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

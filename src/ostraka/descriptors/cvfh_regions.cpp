@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/cloud/resample.hpp"
 #include "ostraka/descriptors/checks.hpp"
 #include "ostraka/descriptors/plane_fits.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ostraka/base/types.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 

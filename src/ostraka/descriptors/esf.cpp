@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <array>
 
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/checks.hpp"
 #include "ostraka/descriptors/esf_samples.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

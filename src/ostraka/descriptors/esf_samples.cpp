@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/exact_sum.hpp"
 #include "ostraka/descriptors/fast_math.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 #include "ostraka/descriptors/voxel_lines.hpp"
 
 namespace ostraka {

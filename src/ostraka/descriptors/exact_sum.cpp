@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "ostraka/descriptors/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

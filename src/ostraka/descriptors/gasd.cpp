@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/checks.hpp"
 #include "ostraka/descriptors/exact_sum.hpp"
 #include "ostraka/descriptors/gasd_aligned.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

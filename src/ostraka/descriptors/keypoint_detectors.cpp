@@ -9,9 +9,9 @@
 #include <tuple>
 
 #include "ostraka/base/parallel.hpp"
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/local_checks.hpp"
 #include "ostraka/descriptors/surfel_grid.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

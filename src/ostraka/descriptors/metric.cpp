@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "ostraka/descriptors/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/descriptors/neighborhoods.hpp"
 
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/checks.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/exact_sum.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "ostraka/descriptors/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 

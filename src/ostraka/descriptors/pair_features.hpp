@@ -10,7 +10,7 @@
 // As PCL 1.13, points that coincide, and points along the normal, count in the middle bins.
 #pragma once
 
-#include "ostraka/descriptors/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "ostraka/base/parallel.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

@@ -14,8 +14,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/support.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

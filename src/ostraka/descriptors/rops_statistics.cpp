@@ -10,8 +10,8 @@
 #include <limits>
 #include <utility>
 
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/fast_math.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

@@ -8,12 +8,12 @@
 #include <limits>
 
 #include "ostraka/base/parallel.hpp"
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/checks.hpp"
 #include "ostraka/descriptors/fast_math.hpp"
 #include "ostraka/descriptors/neighborhoods.hpp"
 #include "ostraka/descriptors/shot_frame.hpp"
 #include "ostraka/descriptors/support.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

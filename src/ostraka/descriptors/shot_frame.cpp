@@ -9,7 +9,7 @@
 #include <limits>
 #include <tuple>
 
-#include "ostraka/descriptors/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "ostraka/descriptors/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

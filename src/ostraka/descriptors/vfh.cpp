@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/checks.hpp"
 #include "ostraka/descriptors/exact_sum.hpp"
 #include "ostraka/descriptors/fast_math.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "ostraka/base/vector_clones.hpp"
 #include "ostraka/descriptors/exact_sum.hpp"
 #include "ostraka/descriptors/fast_math.hpp"
-#include "ostraka/descriptors/vector_clones.hpp"
 
 namespace ostraka {
 namespace {

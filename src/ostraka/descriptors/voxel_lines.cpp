@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "ostraka/descriptors/vector_clones.hpp"
+#include "ostraka/base/vector_clones.hpp"
 #if OSTRAKA_HAS_AVX2_CLONES
 #include <immintrin.h>
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Private to this module: functions compiled twice, for any x86-64 and for AVX2 machines, and
+// Functions compiled twice, for any x86-64 and for AVX2 machines, and
 // chosen when the program starts. Without contraction and reassociation both give the same bits.
 #pragma once
 
