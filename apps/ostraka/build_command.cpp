@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -11,10 +12,8 @@
 #include "common.hpp"
 #include "ostraka/base/error.hpp"
 #include "ostraka/base/stopwatch.hpp"
-#include "ostraka/io/atomic_file.hpp"
-#include "ostraka/library/bags.hpp"
 #include "ostraka/library/build.hpp"
-#include "ostraka/library/library_file.hpp"
+#include "ostraka/library/build_file.hpp"
 
 namespace ostraka::app {
 namespace {
@@ -51,17 +50,24 @@ std::vector<AnyDescriptor> parse_descriptors(const std::string& text) {
 }
 
 // "part.ply" or, in another unit than the library's, "part.ply:m".
-ModelSource load_in_unit(const std::string& argument, std::optional<Unit> unit) {
+ModelInput input_in_unit(const std::string& argument, std::optional<Unit> unit) {
     const std::size_t colon = argument.rfind(':');
-    if (colon == std::string::npos || std::filesystem::exists(argument))
-        return load_model(argument);
-    const std::optional<Unit> own = parse_unit(argument.substr(colon + 1));
-    if (!own) return load_model(argument);
-    ModelSource model = load_model(argument.substr(0, colon));
-    if (!unit) return model;  // the missing --unit is reported later, with the models' sizes
+    const bool plain = colon == std::string::npos || std::filesystem::exists(argument);
+    const std::optional<Unit> own =
+        plain ? std::nullopt : parse_unit(std::string_view(argument).substr(colon + 1));
+    const std::filesystem::path path = own ? argument.substr(0, colon) : argument;
+    if (!std::filesystem::exists(path)) throw FileError(path, "no such file");
+    ModelInput input = model_input(path);
+    if (!own || !unit) return input;  // a missing --unit is reported later, with the models' sizes
     const auto factor = static_cast<float>(unit_factor(*own, *unit));
-    for (Vec3f& vertex : model.mesh.vertices) vertex *= factor;
-    return model;
+    input.file = std::filesystem::path(argument).filename().string();
+    input.load = [path, factor, file = input.file] {
+        ModelSource model = load_model(path);
+        for (Vec3f& vertex : model.mesh.vertices) vertex *= factor;
+        model.file = file;
+        return model;
+    };
+    return input;
 }
 
 struct Shard {
@@ -82,13 +88,14 @@ Shard parse_shard(const std::string& text) {
 }
 
 // Every count-th model by name. What is derived from all models is worked out before.
-std::vector<ModelSource> models_of_shard(std::vector<ModelSource> models, const Shard& shard,
-                                         LibrarySettings& settings) {
-    if (shard.count == 1) return models;
-    if (settings.sampling == 0.0) settings.sampling = default_sampling(models);
+std::vector<ModelInput> models_of_shard(std::vector<ModelInput> models, const Shard& shard,
+                                        LibrarySettings& settings) {
     std::sort(models.begin(), models.end(),
               [](const auto& a, const auto& b) { return a.name < b.name; });
-    std::vector<ModelSource> mine;
+    require_distinct_names(models);
+    if (shard.count == 1) return models;
+    if (settings.sampling == 0.0) settings.sampling = default_sampling(models);
+    std::vector<ModelInput> mine;
     for (std::size_t i = shard.number; i < models.size(); i += shard.count) {
         mine.push_back(std::move(models[i]));
     }
@@ -99,26 +106,42 @@ std::vector<ModelSource> models_of_shard(std::vector<ModelSource> models, const 
     return mine;
 }
 
-std::string size_hint(const std::vector<ModelSource>& models) {
-    double least = measure(models.front().mesh).diameter;
-    double most = least;
-    for (const ModelSource& model : models) {
-        const double diameter = measure(model.mesh).diameter;
+std::string size_hint(const std::vector<ModelInput>& models) {
+    double least = std::numeric_limits<double>::max();
+    double most = 0.0;
+    for (const ModelInput& model : models) {
+        const double diameter = measure(model.load().mesh).diameter;
         least = std::min(least, diameter);
         most = std::max(most, diameter);
     }
     return fmt::format("the models measure {:.4g} to {:.4g} units across", least, most);
 }
 
-void say_summary(const ModelLibrary& library) {
+// Share of likely observations that an entry overlaps by at least so much.
+Json coverage_json(const BuildCounts& counts) {
+    Json shares = Json::object();
+    for (std::size_t i = 0; i < kCoveredOverlaps.size(); ++i) {
+        shares[fmt::format("{:.1f}", kCoveredOverlaps[i])] = counts.covered[i];
+    }
+    return shares;
+}
+
+std::size_t count_entries(const BuildOutcome& built) {
+    std::size_t entries = 0;
+    for (const ModelSummary& model : built.models) {
+        entries += static_cast<std::size_t>(model.counts.kept);
+    }
+    return entries;
+}
+
+void say_summary(const BuildOutcome& built) {
     std::vector<std::vector<std::string>> rows = {{"model", "diameter", "views", "cuts",
                                                    "too small", "redundant", "beyond budget",
                                                    "kept", "coverage"}};
-    for (const Model& model : library.models) {
+    for (const ModelSummary& model : built.models) {
         const BuildCounts& c = model.counts;
         rows.push_back(
-            {model.name,
-             fmt::format("{:.4g} {}", model.shape.diameter, unit_name(library.settings.unit)),
+            {model.name, fmt::format("{:.4g} {}", model.diameter, unit_name(built.settings.unit)),
              std::to_string(c.views), std::to_string(c.cuts), std::to_string(c.too_small),
              std::to_string(c.redundant), std::to_string(c.beyond_budget), std::to_string(c.kept),
              fmt::format("{:.3f}", c.coverage)});
@@ -126,24 +149,26 @@ void say_summary(const ModelLibrary& library) {
     say_table(rows);
 }
 
-Json summary_json(const ModelLibrary& library, const std::string& file, double seconds) {
+Json summary_json(const BuildOutcome& built, const std::string& file, double seconds) {
     Json models = Json::array();
-    for (const Model& model : library.models) {
+    for (const ModelSummary& model : built.models) {
         const BuildCounts& c = model.counts;
         models.push_back({{"model", model.name},
-                          {"diameter", model.shape.diameter},
+                          {"diameter", model.diameter},
                           {"views", c.views},
                           {"subparts_made", c.cuts},
                           {"dropped_too_small", c.too_small},
                           {"dropped_redundant", c.redundant},
                           {"dropped_beyond_budget", c.beyond_budget},
                           {"kept", c.kept},
-                          {"coverage", c.coverage}});
+                          {"coverage", c.coverage},
+                          {"covered", coverage_json(c)}});
     }
     return {{"library", file},
-            {"unit", unit_name(library.settings.unit)},
-            {"sampling", library.settings.sampling},
-            {"entries", library.entries.size()},
+            {"unit", unit_name(built.settings.unit)},
+            {"sampling", built.settings.sampling},
+            {"entries", count_entries(built)},
+            {"resumed", built.resumed},
             {"models", models},
             {"seconds", seconds}};
 }
@@ -157,30 +182,33 @@ void run_build(BuildOptions& options) {
     }
     if (!options.descriptors.empty()) settings.descriptors = parse_descriptors(options.descriptors);
     const Shard shard = parse_shard(options.shard);
-    { const AtomicFile writable(options.output); }  // better to fail now than after the build
-    std::vector<ModelSource> models;
+    std::vector<ModelInput> models;
     for (const std::string& path : options.models) {
-        models.push_back(load_in_unit(path, parse_unit(options.unit)));
+        models.push_back(input_in_unit(path, parse_unit(options.unit)));
     }
     settings.unit = require_unit(options.unit, options.unit.empty() ? size_hint(models) : "");
     settings.views.sensor.seed = settings.seed;
     models = models_of_shard(std::move(models), shard, settings);
-    ModelLibrary library = build_library(models, settings, progress_bar());
-    if (options.bag_of_words) make_bags(library);
-    save_library(library, options.output);
-    say_summary(library);
+    const BuildOutcome built =
+        build_library_file(models, settings, options.output, options.bag_of_words, progress_bar());
+    say_summary(built);
+    if (built.resumed > 0) {
+        say(fmt::format("{} of {} models were there from an unfinished build", built.resumed,
+                        built.models.size()));
+    }
     say(fmt::format("{}: {} models, {} entries, sampling {:.4g} {}, {:.1f} MB, {:.1f} s",
-                    options.output, library.models.size(), library.entries.size(),
-                    library.settings.sampling, unit_name(library.settings.unit),
+                    options.output, built.models.size(), count_entries(built),
+                    built.settings.sampling, unit_name(built.settings.unit),
                     double(std::filesystem::file_size(options.output)) / 1e6, watch.seconds()));
-    write_json(summary_json(library, options.output, watch.seconds()), options.common.json);
+    write_json(summary_json(built, options.output, watch.seconds()), options.common.json);
 }
 
 }  // namespace
 
 void add_build(CLI::App& app) {
     auto options = std::make_shared<BuildOptions>();
-    CLI::App* command = app.add_subcommand("build", "make a library of CAD models");
+    CLI::App* command = app.add_subcommand(
+        "build", "make a library of CAD models; the same command goes on after an interruption");
     command
         ->add_option(
             "models", options->models,

@@ -12,6 +12,8 @@ void add_classify(CLI::App& app);
 void add_describe(CLI::App& app);
 void add_edit(CLI::App& app);
 void add_inspect(CLI::App& app);
+void add_verify(CLI::App& app);
+void add_symmetry(CLI::App& app);
 void add_views(CLI::App& app);
 void add_parts(CLI::App& app);
 void add_simulate(CLI::App& app);

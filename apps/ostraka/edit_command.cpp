@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "ostraka/base/error.hpp"
 #include "ostraka/base/stopwatch.hpp"
 #include "ostraka/io/atomic_file.hpp"
 #include "ostraka/library/edit.hpp"
@@ -20,47 +21,66 @@ struct EditOptions {
     std::string output;               // empty: the library itself
 };
 
-void save(const ModelLibrary& library, const EditOptions& options, const Stopwatch& watch) {
+// Edits the library itself or, with --output, a copy that appears when it is done.
+template <class Edit>
+void edit(const EditOptions& options, Edit change) {
+    if (options.output.empty()) {
+        change(options.library);
+        return;
+    }
+    AtomicFile copy(options.output);
+    std::filesystem::copy_file(options.library, copy.temporary(),
+                               std::filesystem::copy_options::overwrite_existing);
+    change(copy.temporary());
+    copy.commit();
+}
+
+void tell(const EditOptions& options, const Stopwatch& watch, std::size_t present = 0) {
     const std::string& path = options.output.empty() ? options.library : options.output;
-    save_library(library, path);
-    Json models = Json::array();
-    for (const Model& model : library.models) models.push_back(model.name);
-    say(fmt::format("{}: {} models, {} entries, {:.1f} s", path, library.models.size(),
-                    library.entries.size(), watch.seconds()));
-    write_json({{"library", path},
-                {"models", models},
-                {"entries", library.entries.size()},
-                {"seconds", watch.seconds()}},
+    const std::vector<std::string> models = model_names(path);
+    if (present > 0) say(fmt::format("{} models were in the library already", present));
+    say(fmt::format("{}: {} models, {:.1f} s", path, models.size(), watch.seconds()));
+    write_json({{"library", path}, {"models", models}, {"seconds", watch.seconds()}},
                options.common.json);
 }
 
 void run_add(const EditOptions& options) {
     catch_interrupts();
     const Stopwatch watch;
-    { const AtomicFile writable(options.output.empty() ? options.library : options.output); }
-    std::vector<ModelSource> models;
-    for (const std::string& path : options.inputs) models.push_back(load_model(path));
-    save(add_models(load_library(options.library), models, progress_bar()), options, watch);
+    std::vector<ModelInput> models;
+    for (const std::string& path : options.inputs) {
+        if (!std::filesystem::exists(path)) throw FileError(path, "no such file");
+        models.push_back(model_input(path));
+    }
+    AddOutcome outcome;
+    edit(options, [&](const std::filesystem::path& library) {
+        outcome = add_models(library, models, progress_bar());
+    });
+    tell(options, watch, outcome.present);
 }
 
 void run_remove(const EditOptions& options) {
     const Stopwatch watch;
-    ModelLibrary library = load_library(options.library);
-    for (const std::string& name : options.inputs) library = remove_model(std::move(library), name);
-    save(library, options, watch);
+    edit(options,
+         [&](const std::filesystem::path& library) { remove_models(library, options.inputs); });
+    tell(options, watch);
 }
 
 void run_rename(const EditOptions& options) {
     const Stopwatch watch;
-    save(rename_model(load_library(options.library), options.inputs[0], options.inputs[1]), options,
-         watch);
+    edit(options, [&](const std::filesystem::path& library) {
+        rename_model(library, options.inputs[0], options.inputs[1]);
+    });
+    tell(options, watch);
 }
 
 void run_merge(const EditOptions& options) {
+    catch_interrupts();
     const Stopwatch watch;
-    std::vector<ModelLibrary> libraries;
-    for (const std::string& path : options.inputs) libraries.push_back(load_library(path));
-    save(merge_libraries(std::move(libraries)), options, watch);
+    const std::vector<std::filesystem::path> libraries(options.inputs.begin(),
+                                                       options.inputs.end());
+    merge_libraries(libraries, options.output, progress_bar());
+    tell(options, watch);
 }
 
 void add_output(CLI::App& command, EditOptions& options) {

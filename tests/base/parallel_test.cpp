@@ -125,5 +125,47 @@ TEST_F(Parallel, AnExceptionInOneItemLeavesTheInnerLoopsOfOthersWhole) {
     }
 }
 
+TEST_F(Parallel, ThePipelineKeepsOrderAndItsBound) {
+    for (const int threads : {1, 2, 4}) {
+        set_thread_count(threads);
+        std::vector<int> state(200, 0);
+        std::atomic<int> in_flight = 0;
+        std::size_t begun = 0;
+        std::size_t ended = 0;
+        ordered_pipeline(
+            state.size(), 3,
+            [&](std::size_t i) {
+                EXPECT_EQ(i, begun++);
+                EXPECT_LE(++in_flight, 3);
+                state[i] = 1;
+            },
+            [&](std::size_t i) {
+                EXPECT_EQ(state[i], 1);
+                parallel_for(4, [&](std::size_t) {});
+                state[i] = 2;
+            },
+            [&](std::size_t i) {
+                EXPECT_EQ(i, ended++);
+                EXPECT_EQ(state[i], 2);
+                --in_flight;
+            });
+        EXPECT_EQ(ended, state.size());
+    }
+}
+
+TEST_F(Parallel, ThePipelineHandsOnExceptionsOfEveryStage) {
+    const auto nothing = [](std::size_t) {};
+    const auto fail = [](std::size_t i) {
+        if (i == 5) throw InvalidInput("item 5");
+    };
+    std::size_t ended = 0;
+    const auto count = [&](std::size_t) { ++ended; };
+    EXPECT_THROW(ordered_pipeline(20, 2, fail, nothing, count), InvalidInput);
+    EXPECT_THROW(ordered_pipeline(20, 2, nothing, fail, nothing), InvalidInput);
+    EXPECT_THROW(ordered_pipeline(20, 2, nothing, nothing, fail), InvalidInput);
+    EXPECT_LE(ended, 5U);
+    ordered_pipeline(0, 2, fail, fail, fail);
+}
+
 }  // namespace
 }  // namespace ostraka

@@ -39,6 +39,18 @@ TEST(Sha256, DistinguishesLengthsAroundBlocks) {
     EXPECT_EQ(digests.size(), 201U);
 }
 
+TEST(Sha256, PiecesGiveTheDigestOfTheWhole) {
+    std::vector<unsigned char> bytes(1000);
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<unsigned char>(7 * i);
+    for (const std::size_t piece : {1U, 3U, 63U, 64U, 65U, 200U, 999U}) {
+        Sha256 digest;
+        for (std::size_t i = 0; i < bytes.size(); i += piece) {
+            digest.add(std::span(bytes).subspan(i, std::min(piece, bytes.size() - i)));
+        }
+        EXPECT_EQ(digest.finish(), sha256(bytes)) << piece;
+    }
+}
+
 class Sha256OfFile : public testing::Test {
   protected:
     Sha256OfFile() : folder_(std::filesystem::path(testing::TempDir()) / "ostraka_sha256_test") {

@@ -7,110 +7,174 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/base/parallel.hpp"
 #include "ostraka/library/bags.hpp"
 #include "ostraka/library/build.hpp"
+#include "ostraka/library/build_file.hpp"
 #include "ostraka/library/library_file.hpp"
 #include "support/simple_models.hpp"
 
 namespace ostraka {
 namespace {
 
-// The settings of a build at once, with the sampling distance that does not depend on all models.
-LibrarySettings settings() {
-    LibrarySettings fixed = testing::quick_settings();
-    if (fixed.sampling == 0.0) fixed.sampling = default_sampling(testing::simple_models());
-    return fixed;
-}
+namespace fs = std::filesystem;
 
-ModelLibrary of(std::vector<ModelSource> models) {
-    return build_library(models, settings());
-}
-
-std::string bytes_of(const ModelLibrary& library) {
-    const auto path = std::filesystem::temp_directory_path() /
-                      ("ostraka_edit_test_" + std::to_string(getpid()) + ".ostraka");
-    save_library(library, path);
+std::string bytes_of(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
-    std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    file.close();
-    std::filesystem::remove(path);
-    return bytes;
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string dump_of(const fs::path& path) {
+    std::ostringstream out;
+    dump_library(path, out);
+    return out.str();
 }
 
 class Edit : public ::testing::Test {
   protected:
-    static void SetUpTestSuite() {
-        const auto models = testing::simple_models();
-        first_ = new ModelLibrary(of({models[0]}));
-        second_ = new ModelLibrary(of({models[1]}));
-        both_ = new ModelLibrary(of({models[0], models[1]}));
+    Edit() : folder_(fs::temp_directory_path() / ("ostraka_edit_" + std::to_string(getpid()))) {
+        fs::create_directories(folder_);
+        models_ = testing::simple_models();
+        settings_ = testing::quick_settings();
+        if (settings_.sampling == 0.0) settings_.sampling = default_sampling(inputs({0, 1}));
+        settings_ = complete_settings(settings_);
     }
-    static void TearDownTestSuite() {
-        delete first_;
-        delete second_;
-        delete both_;
-    }
-    static ModelLibrary* first_;
-    static ModelLibrary* second_;
-    static ModelLibrary* both_;
-};
-ModelLibrary* Edit::first_ = nullptr;
-ModelLibrary* Edit::second_ = nullptr;
-ModelLibrary* Edit::both_ = nullptr;
+    ~Edit() override { fs::remove_all(folder_); }
 
-TEST_F(Edit, MergingEqualsBuildingAtOnceByteForByte) {
-    const std::string at_once = bytes_of(*both_);
-    EXPECT_EQ(bytes_of(merge_libraries({*first_, *second_})), at_once);
-    EXPECT_EQ(bytes_of(merge_libraries({*second_, *first_})), at_once);
+    std::vector<ModelInput> inputs(std::initializer_list<std::size_t> numbers) const {
+        std::vector<ModelInput> chosen;
+        for (const std::size_t m : numbers) chosen.push_back(model_input(models_[m]));
+        return chosen;
+    }
+    fs::path build(const char* name, std::initializer_list<std::size_t> numbers,
+                   bool bags = false) const {
+        build_library_file(inputs(numbers), settings_, folder_ / name, bags);
+        return folder_ / name;
+    }
+    std::string name(std::size_t model) const { return models_[model].name; }
+
+    fs::path folder_;
+    std::vector<ModelSource> models_;
+    LibrarySettings settings_;
+};
+
+TEST_F(Edit, MergingGivesTheBytesOfBuildingAtOnce) {
+    const fs::path both = build("both", {0, 1});
+    const std::vector<fs::path> parts = {build("second", {1}), build("first", {0})};
+    merge_libraries(parts, folder_ / "merged");
+    EXPECT_EQ(bytes_of(folder_ / "merged"), bytes_of(both));
+    save_library(build_library(models_, settings_), folder_ / "in_memory");
+    EXPECT_EQ(bytes_of(folder_ / "in_memory"), bytes_of(both));
 }
 
-TEST_F(Edit, AddingEqualsBuildingAtOnceByteForByte) {
-    const auto models = testing::simple_models();
-    EXPECT_EQ(bytes_of(add_models(*second_, std::span(models).first(1))), bytes_of(*both_));
-    EXPECT_THROW(add_models(*both_, std::span(models).first(1)), InvalidInput);
+TEST_F(Edit, AddingGivesTheContentOfBuildingAtOnce) {
+    const fs::path both = build("both", {0, 1});
+    const fs::path grown = build("grown", {1});
+    EXPECT_NE(dump_of(grown), dump_of(both));
+    const AddOutcome outcome = add_models(grown, inputs({0}));
+    EXPECT_EQ(outcome.added, 1U);
+    EXPECT_EQ(dump_of(grown), dump_of(both));
+    EXPECT_EQ(verify_library(grown).sha256, verify_library(both).sha256);
+    // These models come from memory, so that nobody can tell that they are the same.
+    EXPECT_THROW(add_models(grown, inputs({0})), InvalidInput);
 }
 
 TEST_F(Edit, RemovingUndoesAdding) {
-    EXPECT_EQ(bytes_of(remove_model(*both_, second_->models[0].name)), bytes_of(*first_));
-    EXPECT_THROW(remove_model(*both_, "no such model"), InvalidInput);
-    EXPECT_THROW(remove_model(*first_, first_->models[0].name), InvalidInput);
+    const fs::path first = build("first", {0});
+    const fs::path both = build("both", {0, 1});
+    remove_models(both, std::vector{name(1)});
+    EXPECT_EQ(dump_of(both), dump_of(first));
+    EXPECT_THROW(remove_models(both, std::vector<std::string>{"no such model"}), InvalidInput);
+    EXPECT_THROW(remove_models(both, std::vector{name(0)}), InvalidInput);
+    EXPECT_EQ(dump_of(both), dump_of(first));
 }
 
 TEST_F(Edit, RenamingMovesAModelToItsPlaceAndBack) {
-    const std::string name = both_->models[0].name;
-    const ModelLibrary renamed = rename_model(*both_, name, "zzz");
+    const fs::path both = build("both", {0, 1});
+    const std::string before = dump_of(both);
+    rename_model(both, name(0), "zzz");
+    const ModelLibrary renamed = load_library(both);
     EXPECT_EQ(renamed.models.back().name, "zzz");
     EXPECT_EQ(renamed.entries.back().model, 1U);
-    EXPECT_EQ(bytes_of(rename_model(renamed, "zzz", name)), bytes_of(*both_));
-    EXPECT_THROW(rename_model(*both_, name, both_->models[1].name), InvalidInput);
-    EXPECT_THROW(rename_model(*both_, name, ""), InvalidInput);
-    EXPECT_THROW(rename_model(*both_, "no such model", "a"), InvalidInput);
+    rename_model(both, "zzz", name(0));
+    EXPECT_EQ(dump_of(both), before);
+    EXPECT_THROW(rename_model(both, name(0), name(1)), InvalidInput);
+    EXPECT_THROW(rename_model(both, name(0), ""), InvalidInput);
+    EXPECT_THROW(rename_model(both, "no such model", "a"), InvalidInput);
+    EXPECT_EQ(dump_of(both), before);
 }
 
 TEST_F(Edit, BagsOfWordsAreMadeAnewWhereTheFirstLibraryHasThem) {
-    ModelLibrary at_once = *both_;
-    make_bags(at_once);
-    ModelLibrary first = *first_;
-    make_bags(first);
-    EXPECT_EQ(bytes_of(merge_libraries({first, *second_})), bytes_of(at_once));
-    EXPECT_EQ(bytes_of(remove_model(at_once, second_->models[0].name)), bytes_of(first));
-    EXPECT_EQ(merge_libraries({*second_, first}).codebook.size(), 0U);
+    const ModelLibrary at_once = load_library(build("both", {0, 1}, true));
+    const fs::path first = build("first", {0}, true);
+    const fs::path second = build("second", {1});
+    merge_libraries(std::vector{first, second}, folder_ / "merged");
+    EXPECT_EQ(bytes_of(folder_ / "merged"), bytes_of(folder_ / "both"));
+    merge_libraries(std::vector{second, first}, folder_ / "without");
+    EXPECT_EQ(load_library(folder_ / "without").codebook.size(), 0U);
+
+    const ModelLibrary alone = load_library(first);
+    add_models(first, inputs({1}));
+    EXPECT_EQ(load_library(first).bags, at_once.bags);
+    EXPECT_EQ(load_library(first).codebook.words, at_once.codebook.words);
+    remove_models(first, std::vector{name(1)});
+    EXPECT_EQ(load_library(first).bags, alone.bags);
+    EXPECT_TRUE(verify_library(first).problems.empty());
 }
 
 TEST_F(Edit, MergingNamesTheSettingThatDiffers) {
-    ModelLibrary other = *second_;
-    other.settings.cuts.min_points += 1;
+    const fs::path first = build("first", {0});
+    settings_.cuts.min_points += 1;
+    const fs::path other = build("other", {1});
     try {
-        merge_libraries({*first_, other});
+        merge_libraries(std::vector{first, other}, folder_ / "merged");
         FAIL() << "merged libraries of different settings";
     } catch (const InvalidInput& error) {
         EXPECT_NE(std::string(error.what()).find("cuts.min_points"), std::string::npos)
             << error.what();
     }
-    EXPECT_THROW(merge_libraries({*first_, *first_}), InvalidInput);
-    EXPECT_THROW(merge_libraries({}), InvalidInput);
+    EXPECT_FALSE(fs::exists(folder_ / "merged"));
+    EXPECT_THROW(merge_libraries(std::vector{first, first}, folder_ / "merged"), InvalidInput);
+    EXPECT_THROW(merge_libraries({}, folder_ / "merged"), InvalidInput);
+}
+
+TEST_F(Edit, AnUnfinishedBuildIsContinuedAndThenGone) {
+    // The second model can't be read: the build fails when the first may be done.
+    for (ModelSource& model : models_) {
+        model.file = model.name + ".ply";
+        model.sha256 = std::string(64, 'a');
+    }
+    const fs::path target = folder_ / "both";
+    std::vector<ModelInput> broken = inputs({0, 1});
+    broken[1].load = []() -> ModelSource { throw InvalidInput("unreadable"); };
+    set_thread_count(1);
+    EXPECT_THROW(build_library_file(broken, settings_, target), InvalidInput);
+    set_thread_count(0);
+    EXPECT_FALSE(fs::exists(target));
+    EXPECT_TRUE(fs::exists(unfinished_build(target)));
+    const BuildOutcome outcome = build_library_file(inputs({0, 1}), settings_, target);
+    EXPECT_EQ(outcome.resumed, 1U);
+    EXPECT_FALSE(fs::exists(unfinished_build(target)));
+    save_library(build_library(models_, settings_), folder_ / "in_memory");
+    EXPECT_EQ(bytes_of(target), bytes_of(folder_ / "in_memory"));
+}
+
+TEST_F(Edit, LibrariesOfFormat1AreConvertedByEditing) {
+    const fs::path old = fs::path(OSTRAKA_TEST_DATA) / "format1.ostraka";
+    const ModelLibrary before = load_library(old);
+    const fs::path copy = folder_ / "copy";
+    fs::copy_file(old, copy);
+    rename_model(copy, "tee", "a tee");
+    const ModelLibrary after = load_library(copy);
+    EXPECT_EQ(verify_library(copy).format, kLibraryFormat);
+    ASSERT_EQ(after.models.size(), before.models.size());
+    EXPECT_EQ(after.models[0].name, "a tee");
+    EXPECT_EQ(after.models[0].mesh.vertices, before.models[1].mesh.vertices);
+    merge_libraries(std::vector{old}, folder_ / "merged");
+    EXPECT_EQ(load_library(folder_ / "merged").tables[1].rows, before.tables[1].rows);
 }
 
 }  // namespace

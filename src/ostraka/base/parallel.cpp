@@ -4,9 +4,11 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 
@@ -38,6 +40,37 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
             },
             context);
     });
+}
+
+void ordered_pipeline(std::size_t count, std::size_t in_flight,
+                      const std::function<void(std::size_t)>& begin,
+                      const std::function<void(std::size_t)>& work,
+                      const std::function<void(std::size_t)>& end) {
+    std::size_t next = 0;
+    const auto first = tbb::make_filter<void, std::size_t>(
+        tbb::filter_mode::serial_in_order, [&](tbb::flow_control& control) -> std::size_t {
+            if (next == count) {
+                control.stop();
+                return 0;
+            }
+            begin(next);
+            return next++;
+        });
+    const auto middle =
+        tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, [&](std::size_t i) {
+            work(i);
+            return i;
+        });
+    const auto last = tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order,
+                                                          [&](std::size_t i) { end(i); });
+    tbb::task_group_context context(tbb::task_group_context::isolated);
+    tbb::parallel_pipeline(in_flight, first & middle & last, context);
+}
+
+std::size_t thread_count() {
+    const std::size_t allowed =
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    return std::min(allowed, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
 }
 
 }  // namespace ostraka

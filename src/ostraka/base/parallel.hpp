@@ -18,4 +18,15 @@ void set_thread_count(int count);
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
                   std::size_t grain = 1);
 
+/// A bounded assembly line: begin(i) one after another in order, work(i) on any threads at once,
+/// end(i) one after another in order. At most `in_flight` items are begun and not yet ended, so
+/// memory is bounded whatever the count. Exceptions are rethrown here; what was ended stays ended.
+void ordered_pipeline(std::size_t count, std::size_t in_flight,
+                      const std::function<void(std::size_t)>& begin,
+                      const std::function<void(std::size_t)>& work,
+                      const std::function<void(std::size_t)>& end);
+
+/// Threads that parallel_for() may use now.
+std::size_t thread_count();
+
 }  // namespace ostraka

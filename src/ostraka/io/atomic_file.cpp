@@ -2,6 +2,7 @@
 #include "ostraka/io/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -27,17 +28,40 @@ std::string reason(int error) {
     return std::generic_category().message(error);
 }
 
-// The first free name beside `target`; one left behind by a killed process is passed over.
+// Temporaries are locked as long as their process lives, so one that can be locked was left behind
+// by a kill. Best effort: litter is no reason to fail.
+void remove_litter(const std::filesystem::path& target, const std::string& name) {
+    std::error_code ignored;
+    const std::filesystem::path folder =
+        target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
+    for (const auto& item : std::filesystem::directory_iterator(folder, ignored)) {
+        const std::string found = item.path().filename().string();
+        if (!found.starts_with("." + name + ".") || !found.ends_with(".tmp")) continue;
+        const int descriptor = ::open(item.path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+        if (descriptor < 0) continue;
+        if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(item.path().c_str());
+        ::close(descriptor);
+    }
+}
+
+// The first free name beside `target`.
 std::filesystem::path make_temporary(const std::filesystem::path& target, int& descriptor) {
     const std::string name = target.filename().string().substr(0, kLongestName);
+    remove_litter(target, name);
     for (int i = 0;; ++i) {
         const std::string number = std::to_string(::getpid()) + "-" + std::to_string(i);
         std::filesystem::path temporary =
             target.parent_path() / ("." + name + "." + number + ".tmp");
         descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kNewFile);
-        if (descriptor >= 0 || errno != EEXIST) {
+        if (descriptor < 0) {
+            if (errno == EEXIST) continue;
             return temporary;
         }
+        // Another process may take it for litter before it is locked: then it has no name anymore.
+        struct stat info = {};
+        static_cast<void>(::flock(descriptor, LOCK_EX | LOCK_NB) == 0);
+        if (::fstat(descriptor, &info) != 0 || info.st_nlink > 0) return temporary;
+        ::close(descriptor);
     }
 }
 

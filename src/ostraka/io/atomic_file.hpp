@@ -9,7 +9,7 @@ namespace ostraka {
 
 /// A temporary file beside its target. commit() puts it in the target's place in one step; without
 /// it the destructor removes it. So a full disk, an exception or a kill leaves the old target as it
-/// was (a kill may leave the temporary, `.NAME.PID-N.tmp`).
+/// was (a kill leaves the temporary, `.NAME.PID-N.tmp`, which the next writer removes).
 class AtomicFile {
   public:
     /// Makes the empty temporary.

@@ -4,145 +4,189 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
-#include <numeric>
+#include <optional>
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/library/bags.hpp"
 #include "ostraka/library/build.hpp"
+#include "ostraka/library/library_copy.hpp"
+#include "ostraka/library/library_file.hpp"
 #include "ostraka/library/settings_text.hpp"
 
 namespace ostraka {
 namespace {
 
-// One model with all that belongs to it.
-struct Part {
-    Model model;
-    std::vector<Entry> entries;
-    std::vector<std::vector<float>> rows;  // per table
-};
+namespace fs = std::filesystem;
 
-// Others are derived from these two, so they are named first.
-void require_equal_settings(const LibrarySettings& a, const LibrarySettings& b) {
+// Unit and sampling are named first: others are derived from them.
+void require_equal_settings(const LibrarySettings& a, const LibrarySettings& b,
+                            const fs::path& named) {
     const SettingTexts first = to_text(a);
     SettingTexts second = to_text(b);
     const auto require_equal = [&](const std::string& key) {
         if (first.at(key) == second[key]) return;
-        throw InvalidInput(fmt::format("the libraries differ in the setting {}: {} and {}", key,
-                                       first.at(key), second[key]));
+        throw InvalidInput(fmt::format("{}: the setting {} is {}, in the first library {}",
+                                       named.string(), key, second[key], first.at(key)));
     };
     require_equal("unit");
     require_equal("sampling");
     for (const auto& [key, value] : first) require_equal(key);
 }
 
-std::vector<Part> split(ModelLibrary library) {
-    std::vector<Part> parts(library.models.size());
-    for (std::size_t m = 0; m < parts.size(); ++m) {
-        parts[m].model = std::move(library.models[m]);
-        parts[m].rows.resize(library.tables.size());
-    }
-    for (std::size_t e = 0; e < library.entries.size(); ++e) {
-        Part& part = parts[library.entries[e].model];
-        part.entries.push_back(std::move(library.entries[e]));
-        for (std::size_t t = 0; t < library.tables.size(); ++t) {
-            const std::size_t length = descriptor_length(library.tables[t].descriptor);
-            const auto row =
-                library.tables[t].rows.begin() + static_cast<std::ptrdiff_t>(e * length);
-            part.rows[t].insert(part.rows[t].end(), row, row + static_cast<std::ptrdiff_t>(length));
-        }
-    }
-    return parts;
+// A library of an earlier format is rewritten first.
+LibraryStore open_for_editing(const fs::path& path) {
+    if (library_format(path) != kLibraryFormat) save_library(load_library(path), path);
+    return LibraryStore::open(path, Database::Mode::edit);
 }
 
-void require_distinct_names(const std::vector<Part>& sorted) {
-    for (std::size_t i = 1; i < sorted.size(); ++i) {
-        if (sorted[i].model.name != sorted[i - 1].model.name) continue;
+void seal(LibraryStore& store, bool with_bags) {
+    if (with_bags) make_bags_anew(store);
+    store.seal();
+}
+
+// Those that are not in the library yet.
+std::vector<ModelInput> missing_models(LibraryStore& store, std::span<const ModelInput> models) {
+    std::vector<ModelInput> missing;
+    for (const ModelInput& input : models) {
+        if (!store.contains(input.name)) {
+            missing.push_back(input);
+            continue;
+        }
+        const StoredModel stored = store.find(input.name);
+        const bool same = !stored.source_sha256.empty() && stored.source_sha256 == input.sha256() &&
+                          stored.file == input.file;
+        if (same) continue;
         throw InvalidInput(
-            fmt::format("two models are named {}: names must differ", sorted[i].model.name));
+            fmt::format("the library has another model named {} already: remove or rename it first",
+                        input.name));
     }
+    return missing;
 }
 
-// Models in the order of their names, as build_library() leaves them.
-ModelLibrary join(const LibrarySettings& settings, std::vector<Part> parts, bool with_bags) {
-    std::sort(parts.begin(), parts.end(),
-              [](const Part& a, const Part& b) { return a.model.name < b.model.name; });
-    require_distinct_names(parts);
-    ModelLibrary library;
-    library.settings = settings;
-    for (const AnyDescriptor& descriptor : settings.descriptors) {
-        library.tables.push_back({descriptor, {}});
+// A model of one of the libraries to merge.
+struct Origin {
+    std::size_t library = 0;
+    StoredModel model;
+};
+
+std::vector<Origin> all_models(std::vector<LibraryStore>& stores) {
+    std::vector<Origin> origins;
+    for (std::size_t s = 0; s < stores.size(); ++s) {
+        for (StoredModel& model : stores[s].models()) origins.push_back({s, std::move(model)});
     }
-    for (Part& part : parts) {
-        for (Entry& entry : part.entries) {
-            entry.model = static_cast<std::uint32_t>(library.models.size());
-            library.entries.push_back(std::move(entry));
-        }
-        for (std::size_t t = 0; t < library.tables.size(); ++t) {
-            std::vector<float>& rows = library.tables[t].rows;
-            rows.insert(rows.end(), part.rows[t].begin(), part.rows[t].end());
-        }
-        library.models.push_back(std::move(part.model));
+    std::stable_sort(origins.begin(), origins.end(),
+                     [](const Origin& a, const Origin& b) { return a.model.name < b.model.name; });
+    for (std::size_t i = 1; i < origins.size(); ++i) {
+        if (origins[i].model.name != origins[i - 1].model.name) continue;
+        throw InvalidInput(fmt::format(
+            "{} and {} both have a model named {}", stores[origins[i - 1].library].path().string(),
+            stores[origins[i].library].path().string(), origins[i].model.name));
     }
-    if (with_bags) make_bags(library);  // their words depend on all models
-    return library;
+    return origins;
 }
 
-Part& find_part(std::vector<Part>& parts, const std::string& name) {
-    for (Part& part : parts) {
-        if (part.model.name == name) return part;
+// For libraries with bags of words, which depend on all models, and of earlier formats.
+void merge_in_memory(std::span<const fs::path> libraries, const fs::path& output) {
+    std::vector<ModelRecord> records;
+    std::optional<ModelLibrary> first;
+    for (const fs::path& path : libraries) {
+        ModelLibrary library = load_library(path);
+        if (!first) first = {.settings = library.settings, .codebook = library.codebook};
+        require_equal_settings(first->settings, library.settings, path);
+        for (ModelRecord& record : split_library(std::move(library))) {
+            records.push_back(std::move(record));
+        }
     }
-    throw InvalidInput(fmt::format("the library has no model named {}", name));
+    ModelLibrary merged = join_records(first->settings, std::move(records));
+    if (first->codebook.size() > 0) make_bags(merged);
+    save_library(merged, output);
 }
 
 }  // namespace
 
-ModelLibrary merge_libraries(std::vector<ModelLibrary> libraries) {
-    if (libraries.empty()) throw InvalidInput("nothing to merge");
-    const LibrarySettings settings = libraries.front().settings;
-    const bool with_bags = libraries.front().codebook.size() > 0;
-    std::vector<Part> all;
-    for (ModelLibrary& library : libraries) {
-        require_equal_settings(settings, library.settings);
-        std::vector<Part> parts = split(std::move(library));
-        std::move(parts.begin(), parts.end(), std::back_inserter(all));
-    }
-    return join(settings, std::move(all), with_bags);
-}
-
-ModelLibrary add_models(ModelLibrary library, std::span<const ModelSource> models,
-                        const Progress& progress) {
-    for (const ModelSource& source : models) {
-        for (const Model& model : library.models) {
-            if (model.name != source.name) continue;
-            throw InvalidInput(
-                fmt::format("the library has a model named {} already: remove or rename it first",
-                            source.name));
+AddOutcome add_models(const fs::path& library, std::span<const ModelInput> models,
+                      const Progress& progress) {
+    require_distinct_names(models);
+    LibraryStore store = open_for_editing(library);
+    const std::vector<ModelInput> missing = missing_models(store, models);
+    const bool with_bags = store.has_bags();
+    std::vector<StoredRecord> waiting;
+    const auto put = [&](std::span<const StoredRecord> records) {
+        Transaction transaction(store.database());
+        for (const StoredRecord& record : records) {
+            // Another process may have added it since.
+            if (store.contains(name_of(record))) {
+                throw InvalidInput(
+                    fmt::format("the library has a model named {} already", name_of(record)));
+            }
+            store.put(record);
         }
-    }
-    std::vector<ModelLibrary> both;
-    both.push_back(std::move(library));
-    both.push_back(build_library(models, both.front().settings, progress));
-    return merge_libraries(std::move(both));
+        seal(store, with_bags);
+        transaction.commit();
+    };
+    build_records(
+        missing, store.settings(),
+        [&](const ModelRecord& record) {
+            waiting.push_back(to_stored(record, store.settings()));
+            if (with_bags) return;  // the words are made anew once, for all
+            put(waiting);
+            waiting.clear();
+        },
+        progress);
+    if (!waiting.empty()) put(waiting);
+    return {.added = missing.size(), .present = models.size() - missing.size()};
 }
 
-ModelLibrary remove_model(ModelLibrary library, const std::string& name) {
-    const LibrarySettings settings = library.settings;
-    const bool with_bags = library.codebook.size() > 0;
-    std::vector<Part> parts = split(std::move(library));
-    find_part(parts, name);
-    if (parts.size() == 1) throw InvalidInput("a library needs at least one model");
-    std::erase_if(parts, [&](const Part& part) { return part.model.name == name; });
-    return join(settings, std::move(parts), with_bags);
+void remove_models(const fs::path& library, std::span<const std::string> names) {
+    LibraryStore store = open_for_editing(library);
+    const bool with_bags = store.has_bags();
+    Transaction transaction(store.database());
+    for (const std::string& name : names) store.remove(name);
+    if (store.models().empty()) throw InvalidInput("a library needs at least one model");
+    seal(store, with_bags);
+    transaction.commit();
 }
 
-ModelLibrary rename_model(ModelLibrary library, const std::string& from, const std::string& to) {
+void rename_model(const fs::path& library, const std::string& from, const std::string& to) {
     if (to.empty()) throw InvalidInput("a model's name must not be empty");
-    const LibrarySettings settings = library.settings;
-    const bool with_bags = library.codebook.size() > 0;
-    std::vector<Part> parts = split(std::move(library));
-    find_part(parts, from).model.name = to;
-    return join(settings, std::move(parts), with_bags);
+    LibraryStore store = open_for_editing(library);
+    const bool with_bags = store.has_bags();
+    Transaction transaction(store.database());
+    store.find(from);
+    if (store.contains(to)) {
+        throw InvalidInput(fmt::format("the library has a model named {} already", to));
+    }
+    store.rename(from, to);
+    seal(store, with_bags);
+    transaction.commit();
+}
+
+void merge_libraries(std::span<const fs::path> libraries, const fs::path& output,
+                     const Progress& progress) {
+    if (libraries.empty()) throw InvalidInput("nothing to merge");
+    const bool in_memory =
+        std::any_of(libraries.begin(), libraries.end(),
+                    [](const fs::path& path) { return library_format(path) != kLibraryFormat; });
+    if (in_memory || LibraryStore::open(libraries.front(), Database::Mode::read).has_bags()) {
+        return merge_in_memory(libraries, output);
+    }
+    std::vector<LibraryStore> stores;
+    for (const fs::path& path : libraries) {
+        stores.push_back(LibraryStore::open(path, Database::Mode::read));
+        require_equal_settings(stores.front().settings(), stores.back().settings(), path);
+    }
+    const std::vector<Origin> origins = all_models(stores);
+    const auto record = [&](std::size_t i) {
+        LibraryStore& store = stores[origins[i].library];
+        StoredRecord stored = store.read(origins[i].model);
+        if (digest_of(stored) != origins[i].model.sha256) {
+            throw FormatError(store.path(), "model " + origins[i].model.name,
+                              "its checksum differs");
+        }
+        report(progress, "models", i + 1, origins.size());
+        return stored;
+    };
+    write_library(output, stores.front().settings(), origins.size(), record);
 }
 
 }  // namespace ostraka

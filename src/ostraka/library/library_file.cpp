@@ -2,388 +2,212 @@
 #include "ostraka/library/library_file.hpp"
 
 #include <fmt/format.h>
-#include <cmath>
+
+#include <ostream>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/base/parallel.hpp"
+#include "ostraka/base/sha256.hpp"
 #include "ostraka/io/atomic_file.hpp"
 #include "ostraka/library/bags.hpp"
-#include "ostraka/library/encoding.hpp"
+#include "ostraka/library/library_copy.hpp"
+#include "ostraka/library/library_format1.hpp"
 #include "ostraka/library/settings_text.hpp"
-#include "ostraka/library/sqlite.hpp"
 
 namespace ostraka {
 namespace {
 
-constexpr std::int64_t kApplicationId = 0x4f535452;  // "OSTR"
-constexpr std::size_t kShapeNumbers = 14;
-constexpr std::size_t kFrameNumbers = 15;
+constexpr std::size_t kModelsInFlight = 8;
 
-constexpr const char* kSchema = R"sql(
-CREATE TABLE setting(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE model(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, file TEXT NOT NULL,
-    sha256 TEXT NOT NULL, vertices BLOB NOT NULL, triangles BLOB NOT NULL, shape BLOB NOT NULL,
-    surface BLOB NOT NULL, keypoint_points BLOB NOT NULL, keypoint_frames BLOB NOT NULL,
-    keypoint_rows BLOB NOT NULL, counts BLOB NOT NULL, coverage REAL NOT NULL);
-CREATE TABLE entry(id INTEGER PRIMARY KEY, model INTEGER NOT NULL REFERENCES model(id),
-    view INTEGER NOT NULL, direction INTEGER NOT NULL, fraction INTEGER NOT NULL,
-    viewpoint BLOB NOT NULL, frame BLOB NOT NULL, ambiguity INTEGER NOT NULL, points BLOB NOT NULL);
-CREATE TABLE descriptor(name TEXT NOT NULL, entry INTEGER NOT NULL REFERENCES entry(id),
-    row BLOB NOT NULL, PRIMARY KEY(name, entry)) WITHOUT ROWID;
-CREATE TABLE codebook(word INTEGER PRIMARY KEY, row BLOB NOT NULL);
-)sql";
-
-template <class T>
-std::span<const T> as_span(const std::vector<T>& values) {
-    return values;
-}
-
-std::vector<float> flat(const std::vector<Vec3f>& vectors) {
-    std::vector<float> values;
-    values.reserve(3 * vectors.size());
-    for (const Vec3f& v : vectors) values.insert(values.end(), v.data(), v.data() + 3);
-    return values;
-}
-
-std::vector<Vec3f> unflat(const std::vector<float>& values) {
-    if (values.size() % 3 != 0) throw InvalidInput("coordinates don't come in threes");
-    std::vector<Vec3f> vectors(values.size() / 3);
-    for (std::size_t i = 0; i < vectors.size(); ++i) {
-        vectors[i] = Vec3f(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-        if (!vectors[i].allFinite()) throw InvalidInput(fmt::format("point {} is not finite", i));
+std::string hex(const Bytes& bytes) {
+    std::string text;
+    for (const unsigned char byte : bytes) {
+        text += "0123456789abcdef"[byte >> 4U];
+        text += "0123456789abcdef"[byte & 15U];
     }
-    return vectors;
+    return text;
 }
 
-std::vector<double> pack(const MeshShape& shape) {
-    std::vector<double> values(shape.center.data(), shape.center.data() + 3);
-    values.push_back(shape.radius);
-    values.push_back(shape.diameter);
-    values.insert(values.end(), shape.axes.data(), shape.axes.data() + 9);
-    return values;
+std::string as_text(const Cell& cell) {
+    return std::visit(
+        [](const auto& value) {
+            using T = std::decay_t<decltype(value)>;
+            if constexpr (std::is_same_v<T, Bytes>) {
+                return hex(value);
+            } else if constexpr (std::is_same_v<T, std::string>) {
+                return value;
+            } else {
+                return fmt::format("{}", value);
+            }
+        },
+        cell);
 }
 
-void check_numbers(const std::vector<double>& values, std::size_t count) {
-    if (values.size() != count) {
-        throw InvalidInput(fmt::format("{} numbers instead of {}", values.size(), count));
+void dump_row(std::ostream& out, std::string_view table, const Row& row) {
+    out << table;
+    for (const Cell& cell : row) out << '\t' << as_text(cell);
+    out << '\n';
+}
+
+std::string content_digest(LibraryStore& store) {
+    std::vector<Row> rows;
+    for (const auto& [key, value] : to_text(store.settings())) rows.push_back({key, value});
+    for (const StoredModel& model : store.models()) rows.push_back({model.name, model.sha256});
+    return digest_of(rows);
+}
+
+void check_structure(Database& database, LibraryCheck& check) {
+    Statement integrity(database, "PRAGMA integrity_check(5)");
+    while (integrity.step()) {
+        if (integrity.text(0) != "ok") check.problems.push_back("database: " + integrity.text(0));
     }
-    for (const double value : values) {
-        if (!std::isfinite(value)) throw InvalidInput("a number is not finite");
+    for (const char* table : {"entry", "descriptor", "bag"}) {
+        const std::int64_t stray = database.number(
+            fmt::format("SELECT count(*) FROM {} WHERE model NOT IN (SELECT id FROM model)", table)
+                .c_str());
+        if (stray > 0)
+            check.problems.push_back(fmt::format("{}: {} rows of no model", table, stray));
     }
 }
 
-MeshShape unpack_shape(const std::vector<double>& values) {
-    check_numbers(values, kShapeNumbers);
-    MeshShape shape;
-    shape.center = Vec3d(values.data());
-    shape.radius = values[3];
-    shape.diameter = values[4];
-    shape.axes = Mat3d(values.data() + 5);
-    if (!(shape.radius > 0.0 && shape.diameter > 0.0)) throw InvalidInput("a model has no size");
-    return shape;
-}
-
-std::vector<double> pack(const PrincipalFrame& frame) {
-    std::vector<double> values;
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 3; ++row) values.push_back(frame.T_cloud_frame(row, column));
-    }
-    for (int axis = 0; axis < 3; ++axis) values.push_back(frame.deviations[axis]);
-    return values;
-}
-
-PrincipalFrame unpack_frame(const std::vector<double>& values, std::int64_t ambiguity) {
-    check_numbers(values, kFrameNumbers);
-    PrincipalFrame frame;
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 3; ++row) {
-            frame.T_cloud_frame.matrix()(row, column) =
-                values[static_cast<std::size_t>(3 * column + row)];
+// Every model is checked, so that one damaged model doesn't hide another.
+void check_models(LibraryStore& store, LibraryCheck& check, const Progress& progress) {
+    const std::vector<StoredModel> models = store.models();
+    check.models = models.size();
+    for (std::size_t m = 0; m < models.size(); ++m) {
+        try {
+            check.entries += store.load(models[m]).entries.size();
+        } catch (const Error& error) {
+            check.problems.emplace_back(error.what());
         }
+        report(progress, "models", m + 1, models.size());
     }
-    frame.deviations = Vec3d(values.data() + 12);
-    frame.ambiguous_sign = (ambiguity & 1) != 0;
-    frame.ambiguous_order = (ambiguity & 2) != 0;
-    return frame;
-}
-
-void save_models(Database& database, const ModelLibrary& library) {
-    Statement insert(database, "INSERT INTO model VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?)");
-    for (std::size_t m = 0; m < library.models.size(); ++m) {
-        const Model& model = library.models[m];
-        std::vector<std::uint32_t> triangles;
-        for (const Triangle& t : model.mesh.triangles)
-            triangles.insert(triangles.end(), t.begin(), t.end());
-        std::vector<float> surface = flat(model.surface.points);
-        const std::vector<float> normals = flat(model.surface.normals);
-        surface.insert(surface.end(), normals.begin(), normals.end());
-        std::vector<float> frames;
-        for (const Mat3f& f : model.keypoints.frames)
-            frames.insert(frames.end(), f.data(), f.data() + 9);
-        const BuildCounts& c = model.counts;
-        const std::vector<std::int32_t> counts = {c.views,     c.cuts,          c.too_small,
-                                                  c.redundant, c.beyond_budget, c.kept};
-        insert.bind(1, static_cast<std::int64_t>(m));
-        insert.bind(2, model.name);
-        insert.bind(3, model.file);
-        insert.bind(4, model.sha256);
-        insert.bind_blob(5, as_span(flat(model.mesh.vertices)));
-        insert.bind_blob(6, as_span(triangles));
-        insert.bind_blob(7, as_span(pack(model.shape)));
-        insert.bind_blob(8, as_span(surface));
-        insert.bind_blob(9, as_span(flat(model.keypoints.points)));
-        insert.bind_blob(10, as_span(frames));
-        insert.bind_blob(11, as_span(model.keypoints.rows));
-        insert.bind_blob(12, as_span(counts));
-        insert.bind(13, c.coverage);
-        insert.step();
-        insert.reset();
-    }
-}
-
-void save_entries(Database& database, const ModelLibrary& library) {
-    Statement insert(database, "INSERT INTO entry VALUES(?,?,?,?,?,?,?,?,?)");
-    for (std::size_t i = 0; i < library.entries.size(); ++i) {
-        const Entry& entry = library.entries[i];
-        const MeshShape& shape = library.models[entry.model].shape;
-        std::vector<std::int16_t> points;
-        for (const Vec3f& point : entry.cloud.points) {
-            const EncodedPoint encoded = encode_point(point, shape);
-            points.insert(points.end(), encoded.begin(), encoded.end());
-        }
-        insert.bind(1, static_cast<std::int64_t>(i));
-        insert.bind(2, static_cast<std::int64_t>(entry.model));
-        insert.bind(3, static_cast<std::int64_t>(entry.view));
-        insert.bind(4, static_cast<std::int64_t>(entry.direction));
-        insert.bind(5, static_cast<std::int64_t>(entry.fraction));
-        insert.bind_blob(6, as_span(flat({entry.cloud.viewpoint})));
-        insert.bind_blob(7, as_span(pack(entry.frame)));
-        insert.bind(8, static_cast<std::int64_t>((entry.frame.ambiguous_sign ? 1 : 0) +
-                                                 (entry.frame.ambiguous_order ? 2 : 0)));
-        insert.bind_blob(9, as_span(points));
-        insert.step();
-        insert.reset();
-    }
-}
-
-void save_rows(Database& database, std::string_view name, std::span<const float> rows,
-               std::size_t length) {
-    Statement insert(database, "INSERT INTO descriptor VALUES(?,?,?)");
-    for (std::size_t i = 0; i < rows.size() / length; ++i) {
-        insert.bind(1, std::string(name));
-        insert.bind(2, static_cast<std::int64_t>(i));
-        insert.bind_blob(3, rows.subspan(i * length, length));
-        insert.step();
-        insert.reset();
-    }
-}
-
-void save_descriptors(Database& database, const ModelLibrary& library) {
-    for (const DescriptorTable& table : library.tables) {
-        save_rows(database, descriptor_name(table.descriptor), table.rows,
-                  descriptor_length(table.descriptor));
-    }
-    const Codebook& codebook = library.codebook;
-    if (codebook.size() == 0) return;
-    save_rows(database, kBagOfWords, library.bags, codebook.size());
-    Statement insert(database, "INSERT INTO codebook VALUES(?,?)");
-    for (std::size_t w = 0; w < codebook.size(); ++w) {
-        insert.bind(1, static_cast<std::int64_t>(w));
-        insert.bind_blob(2, as_span(codebook.words).subspan(w * codebook.length, codebook.length));
-        insert.step();
-        insert.reset();
-    }
-}
-
-Keypoints load_keypoints(const Statement& row, int column) {
-    Keypoints keypoints;
-    keypoints.points = unflat(row.blob<float>(column));
-    const std::vector<float> frames = row.blob<float>(column + 1);
-    keypoints.rows = row.blob<std::uint8_t>(column + 2);
-    if (frames.size() != 9 * keypoints.size() ||
-        keypoints.rows.size() != kShotLength * keypoints.size()) {
-        throw InvalidInput("keypoint columns differ in length");
-    }
-    for (std::size_t i = 0; i < keypoints.size(); ++i) {
-        keypoints.frames.emplace_back(frames.data() + 9 * i);
-        if (!keypoints.frames.back().allFinite()) throw InvalidInput("a frame is not finite");
-    }
-    return keypoints;
-}
-
-Model load_model_row(const Statement& row) {
-    Model model;
-    model.name = row.text(1);
-    model.file = row.text(2);
-    model.sha256 = row.text(3);
-    model.mesh.vertices = unflat(row.blob<float>(4));
-    const std::vector<std::uint32_t> triangles = row.blob<std::uint32_t>(5);
-    if (triangles.empty() || triangles.size() % 3 != 0) throw InvalidInput("triangles are damaged");
-    for (std::size_t i = 0; i < triangles.size(); i += 3) {
-        model.mesh.triangles.push_back({triangles[i], triangles[i + 1], triangles[i + 2]});
-        for (const std::uint32_t vertex : model.mesh.triangles.back()) {
-            if (vertex >= model.mesh.vertices.size())
-                throw InvalidInput("a triangle names no vertex");
-        }
-    }
-    model.shape = unpack_shape(row.blob<double>(6));
-    std::vector<Vec3f> surface = unflat(row.blob<float>(7));
-    if (surface.empty() || surface.size() % 2 != 0) throw InvalidInput("the surface is damaged");
-    const auto half = surface.begin() + static_cast<std::ptrdiff_t>(surface.size() / 2);
-    model.surface.points.assign(surface.begin(), half);
-    model.surface.normals.assign(half, surface.end());
-    model.keypoints = load_keypoints(row, 8);
-    const std::vector<std::int32_t> c = row.blob<std::int32_t>(11);
-    if (c.size() != 6) throw InvalidInput("counts are damaged");
-    model.counts = {c[0], c[1], c[2], c[3], c[4], c[5], row.real(12)};
-    return model;
-}
-
-Entry load_entry_row(const Statement& row, const std::vector<Model>& models) {
-    Entry entry;
-    const std::int64_t model = row.integer(1);
-    if (model < 0 || model >= static_cast<std::int64_t>(models.size())) {
-        throw InvalidInput("an entry names no model");
-    }
-    entry.model = static_cast<std::uint32_t>(model);
-    entry.view = static_cast<int>(row.integer(2));
-    entry.direction = static_cast<int>(row.integer(3));
-    entry.fraction = static_cast<int>(row.integer(4));
-    const std::vector<Vec3f> viewpoint = unflat(row.blob<float>(5));
-    if (viewpoint.size() != 1) throw InvalidInput("a viewpoint is damaged");
-    entry.cloud.viewpoint = viewpoint.front();
-    entry.frame = unpack_frame(row.blob<double>(6), row.integer(7));
-    for (const EncodedPoint& point : row.blob<EncodedPoint>(8)) {
-        entry.cloud.points.push_back(decode_point(point, models[entry.model].shape));
-    }
-    if (entry.cloud.empty()) throw InvalidInput("an entry has no points");
-    return entry;
-}
-
-void append_finite(std::vector<float>& rows, const std::vector<float>& row) {
-    for (const float value : row) {
-        if (!std::isfinite(value)) throw InvalidInput("a descriptor is not finite");
-    }
-    rows.insert(rows.end(), row.begin(), row.end());
-}
-
-std::vector<float> load_rows(Database& database, std::string_view name, std::size_t length,
-                             std::size_t entries) {
-    std::vector<float> rows;
-    Statement select_rows(database,
-                          "SELECT entry, row FROM descriptor WHERE name=? ORDER BY entry");
-    select_rows.bind(1, std::string(name));
-    std::size_t next = 0;
-    for (; select_rows.step(); ++next) {
-        const std::vector<float> row = select_rows.blob<float>(1);
-        if (select_rows.integer(0) != static_cast<std::int64_t>(next) || row.size() != length) {
-            throw InvalidInput(fmt::format("descriptor {} of entry {} is damaged", name, next));
-        }
-        append_finite(rows, row);
-    }
-    if (next != entries) {
-        throw InvalidInput(
-            fmt::format("descriptor {} has {} rows for {} entries", name, next, entries));
-    }
-    return rows;
-}
-
-std::int64_t pragma(Database& database, const char* sql) {
-    Statement statement(database, sql);
-    return statement.step() ? statement.integer(0) : 0;
-}
-
-// Files of before there were codebooks have no such table.
-Codebook load_codebook(Database& database) {
-    Codebook codebook{kShotLength, {}};
-    if (pragma(database, "SELECT count(*) FROM sqlite_master WHERE name='codebook'") == 0) {
-        return codebook;
-    }
-    Statement words(database, "SELECT word, row FROM codebook ORDER BY word");
-    while (words.step()) {
-        const std::vector<float> word = words.blob<float>(1);
-        if (words.integer(0) != static_cast<std::int64_t>(codebook.size()) ||
-            word.size() != codebook.length) {
-            throw InvalidInput(fmt::format("word {} of the codebook is damaged", codebook.size()));
-        }
-        append_finite(codebook.words, word);
-    }
-    return codebook;
-}
-
-ModelLibrary load_content(Database& database) {
-    SettingTexts texts;
-    Statement settings(database, "SELECT key, value FROM setting");
-    while (settings.step()) texts[settings.text(0)] = settings.text(1);
-    ModelLibrary library;
-    library.settings = settings_from_text(texts);
-    Statement models(database, "SELECT * FROM model ORDER BY id");
-    while (models.step()) {
-        if (models.integer(0) != static_cast<std::int64_t>(library.models.size())) {
-            throw InvalidInput("models are not numbered from 0");
-        }
-        library.models.push_back(load_model_row(models));
-    }
-    Statement entries(database, "SELECT * FROM entry ORDER BY id");
-    while (entries.step()) library.entries.push_back(load_entry_row(entries, library.models));
-    for (const AnyDescriptor& descriptor : library.settings.descriptors) {
-        library.tables.push_back(
-            {descriptor, load_rows(database, descriptor_name(descriptor),
-                                   descriptor_length(descriptor), library.entries.size())});
-    }
-    library.codebook = load_codebook(database);
-    if (library.codebook.size() > 0) {
-        library.bags =
-            load_rows(database, kBagOfWords, library.codebook.size(), library.entries.size());
-    }
-    if (library.models.empty()) throw InvalidInput("the library has no models");
-    return library;
 }
 
 }  // namespace
 
-void save_library(const ModelLibrary& library, const std::filesystem::path& path) {
-    if (std::filesystem::is_directory(path)) throw FileError(path, "is a folder");
+void write_library(const std::filesystem::path& path, const LibrarySettings& settings,
+                   std::size_t count, const std::function<StoredRecord(std::size_t)>& record,
+                   const ModelLibrary* bags) {
     AtomicFile file(path);
     {
-        Database database(file.temporary(), Database::Mode::create, path);
-        database.run("PRAGMA journal_mode=MEMORY; PRAGMA synchronous=FULL; PRAGMA page_size=8192;");
-        database.run(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
-                                 kApplicationId, kLibraryFormat)
-                         .c_str());
-        database.run("BEGIN");
-        database.run(kSchema);
-        Statement insert(database, "INSERT INTO setting VALUES(?,?)");
-        for (const auto& [key, value] : to_text(library.settings)) {
-            insert.bind(1, key);
-            insert.bind(2, value);
-            insert.step();
-            insert.reset();
-        }
-        save_models(database, library);
-        save_entries(database, library);
-        save_descriptors(database, library);
-        database.run("COMMIT");
+        LibraryStore store = LibraryStore::create(file.temporary(), settings, path);
+        // Nobody else sees the file until it is complete and flushed, so it needs no journal.
+        store.database().run("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF;");
+        Transaction transaction(store.database());
+        for (std::size_t i = 0; i < count; ++i) store.put(record(i));
+        if (bags != nullptr) store.put_bags(*bags);
+        store.seal();
+        transaction.commit();
     }
     file.commit();
 }
 
+ModelLibrary load_store(LibraryStore& store) {
+    const std::vector<StoredModel> models = store.models();
+    if (models.empty()) return join_records(store.settings(), {});
+    std::vector<StoredRecord> stored(models.size());
+    std::vector<ModelRecord> records(models.size());
+    const auto damaged = [&](std::size_t m, const char* why) {
+        return FormatError(store.path(), "model " + models[m].name, why);
+    };
+    ordered_pipeline(
+        models.size(), kModelsInFlight,
+        [&](std::size_t m) {
+            try {
+                stored[m] = store.read(models[m]);
+            } catch (const InvalidInput& error) {
+                throw damaged(m, error.what());
+            }
+        },
+        [&](std::size_t m) {
+            if (digest_of(stored[m]) != models[m].sha256) throw damaged(m, "its checksum differs");
+            try {
+                records[m] = from_stored(stored[m], store.settings());
+            } catch (const InvalidInput& error) {
+                throw damaged(m, error.what());
+            }
+            stored[m] = {};
+        },
+        [](std::size_t) {});
+    return join_records(store.settings(), std::move(records));
+}
+
+void make_bags_anew(LibraryStore& store) {
+    ModelLibrary library = load_store(store);
+    make_bags(library);
+    store.put_bags(library);
+}
+
+void save_library(const ModelLibrary& library, const std::filesystem::path& path) {
+    const std::vector<ModelRecord> records = split_library(library);
+    write_library(
+        path, library.settings, records.size(),
+        [&](std::size_t i) { return to_stored(records[i], library.settings); }, &library);
+}
+
 ModelLibrary load_library(const std::filesystem::path& path) {
-    if (!std::filesystem::exists(path)) throw FileError(path, "no such file");
-    if (std::filesystem::is_directory(path)) throw FileError(path, "is a folder");
-    Database database(path, Database::Mode::read, path);
-    if (pragma(database, "PRAGMA application_id") != kApplicationId) {
-        throw FormatError(path, "header", "not an Ostraka library");
+    if (library_format(path) == 1) return load_library_format1(path);
+    LibraryStore store = LibraryStore::open(path, Database::Mode::read);
+    const std::vector<std::string> problems = store.damaged_checksums();
+    if (!problems.empty()) throw FormatError(path, "library", problems.front());
+    ModelLibrary library = load_store(store);
+    store.load_bags(library);
+    if (library.models.empty()) throw FormatError(path, "library", "it has no models");
+    return library;
+}
+
+std::vector<std::string> model_names(const std::filesystem::path& path) {
+    std::vector<std::string> names;
+    if (library_format(path) == 1) {
+        for (const Model& model : load_library_format1(path).models) names.push_back(model.name);
+        return names;
     }
-    const std::int64_t format = pragma(database, "PRAGMA user_version");
-    if (format != kLibraryFormat) {
-        throw FormatError(
-            path, "header",
-            fmt::format("library format {}, this program reads format {}", format, kLibraryFormat));
-    }
+    LibraryStore store = LibraryStore::open(path, Database::Mode::read);
+    for (const StoredModel& model : store.models()) names.push_back(model.name);
+    return names;
+}
+
+LibraryCheck verify_library(const std::filesystem::path& path, const Progress& progress) {
+    LibraryCheck check;
+    check.format = library_format(path);
     try {
-        return load_content(database);
-    } catch (const InvalidInput& error) {
-        throw FormatError(path, "library", error.what());
+        if (check.format == 1) {
+            const ModelLibrary library = load_library_format1(path);
+            check.models = library.models.size();
+            check.entries = library.entries.size();
+            return check;
+        }
+        LibraryStore store = LibraryStore::open(path, Database::Mode::read);
+        check_structure(store.database(), check);
+        for (const std::string& problem : store.damaged_checksums()) {
+            check.problems.push_back(problem);
+        }
+        check_models(store, check, progress);
+        check.sha256 = content_digest(store);
+        if (store.has_bags() && check.problems.empty()) {
+            ModelLibrary library = load_store(store);
+            store.load_bags(library);
+        }
+    } catch (const FormatError& error) {
+        check.problems.emplace_back(error.what());
+    }
+    return check;
+}
+
+void dump_library(const std::filesystem::path& path, std::ostream& out) {
+    if (library_format(path) == 1) {
+        throw FormatError(path, "header", "a library of format 1 has no dump: `merge` converts it");
+    }
+    LibraryStore store = LibraryStore::open(path, Database::Mode::read);
+    for (const auto& [key, value] : to_text(store.settings())) {
+        dump_row(out, "setting", {key, value});
+    }
+    for (const StoredModel& model : store.models()) {
+        const StoredRecord record = store.read(model);
+        dump_row(out, "model", record.model);
+        for (const Row& row : record.entries) dump_row(out, "entry", row);
+        for (const Row& row : record.descriptors) dump_row(out, "descriptor", row);
     }
 }
 

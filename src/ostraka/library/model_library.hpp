@@ -2,6 +2,7 @@
 // The library: all entries of all models, plus the settings that made them.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ struct BuildCounts {
     int beyond_budget = 0;  ///< dropped: others cover more
     int kept = 0;           ///< entries in the library
     double coverage = 0.0;  ///< mean overlap of a likely observation with its best entry, 0 to 1
+    std::array<double, 5> covered{};  ///< share of likely observations that some entry overlaps by
+                                      ///< at least kCoveredOverlaps
 };
 
 /// Local rows are stored and compared in 8 bits: round(512 value), at most 255. SHOT's values are

@@ -22,4 +22,18 @@ ModelSource load_model(const std::filesystem::path& path) {
     return source;
 }
 
+ModelInput model_input(const std::filesystem::path& path) {
+    return {.name = path.stem().string(),
+            .file = path.filename().string(),
+            .load = [path] { return load_model(path); },
+            .sha256 = [path] { return sha256_of_file(path); }};
+}
+
+ModelInput model_input(const ModelSource& source) {
+    return {.name = source.name,
+            .file = source.file,
+            .load = [&source] { return source; },
+            .sha256 = [&source] { return source.sha256; }};
+}
+
 }  // namespace ostraka

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "ostraka/mesh/triangle_mesh.hpp"
@@ -20,5 +21,20 @@ struct ModelSource {
 /// @throws FileError, FormatError; InvalidInput, naming the file, if the mesh has no usable
 /// surface.
 ModelSource load_model(const std::filesystem::path& path);
+
+/// A model that is read when it is needed and then forgotten, so that a library of any number of
+/// models can be built.
+struct ModelInput {
+    std::string name;                     ///< that of the source
+    std::string file;                     ///< that of the source
+    std::function<ModelSource()> load;    ///< may be called more than once, from one thread at a
+                                          ///< time; gives the same each time
+    std::function<std::string()> sha256;  ///< of the source, without the mesh being parsed
+};
+
+/// @param path  read with load_model().
+ModelInput model_input(const std::filesystem::path& path);
+/// Of a source in memory, which must outlive the input.
+ModelInput model_input(const ModelSource& source);
 
 }  // namespace ostraka

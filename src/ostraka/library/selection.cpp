@@ -115,10 +115,14 @@ SelectionResult select_entries(std::span<const ElementSet> candidates,
     }
     std::sort(result.chosen.begin(), result.chosen.end());
     result.beyond_budget = count - result.chosen.size();
+    const double all_candidates = std::max<double>(1.0, static_cast<double>(candidates.size()));
     for (std::size_t o = 0; o < count; ++o) {
-        result.coverage += ground.weights[o] * double{covered[o]};
+        const double weight = ground.weights[o] / all_candidates;
+        result.coverage += weight * double{covered[o]};
+        for (std::size_t level = 0; level < kCoveredOverlaps.size(); ++level) {
+            if (double{covered[o]} >= kCoveredOverlaps[level]) result.covered[level] += weight;
+        }
     }
-    if (!candidates.empty()) result.coverage /= static_cast<double>(candidates.size());
     return result;
 }
 

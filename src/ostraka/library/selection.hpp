@@ -11,6 +11,7 @@
 // 1978.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "ostraka/library/surface_elements.hpp"
@@ -23,11 +24,17 @@ struct SelectionSettings {
                                ///< makes one redundant; above 1 nothing is
 };
 
+/// Overlaps at which coverage is reported.
+inline constexpr std::array<double, 5> kCoveredOverlaps = {0.5, 0.6, 0.7, 0.8, 0.9};
+
 struct SelectionResult {
     std::vector<std::uint32_t> chosen;  ///< indices of candidates, ascending
     std::size_t redundant = 0;          ///< dropped as redundant
     std::size_t beyond_budget = 0;      ///< neither redundant nor chosen
     double coverage = 0.0;              ///< F(chosen) / number of candidates, 0 to 1
+    std::array<double, kCoveredOverlaps.size()>
+        covered{};  ///< share of candidates that some
+                    ///< chosen one overlaps by at least so much
 };
 
 /// @param candidates  what each shows; earlier ones are preferred as representatives.

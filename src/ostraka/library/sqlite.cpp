@@ -6,11 +6,16 @@
 #include "ostraka/base/error.hpp"
 
 namespace ostraka {
+namespace {
+
+constexpr int kBusyMilliseconds = 20000;
+
+}  // namespace
 
 Database::Database(const std::filesystem::path& path, Mode mode, const std::filesystem::path& named)
     : path_(named) {
-    const int flags =
-        mode == Mode::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+    // Where writing isn't allowed SQLite falls back to reading by itself.
+    const int flags = SQLITE_OPEN_READWRITE | (mode == Mode::create ? SQLITE_OPEN_CREATE : 0);
     if (sqlite3_open_v2(path.c_str(), &handle_, flags, nullptr) != SQLITE_OK) {
         const std::string problem = handle_ ? sqlite3_errmsg(handle_) : "out of memory";
         sqlite3_close(handle_);
@@ -19,6 +24,13 @@ Database::Database(const std::filesystem::path& path, Mode mode, const std::file
     // The file may come from anywhere: its schema must not run anything.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    sqlite3_busy_timeout(handle_, kBusyMilliseconds);
+    if (mode == Mode::read) {
+        sqlite3_exec(handle_, "PRAGMA query_only=1", nullptr, nullptr, nullptr);
+    } else if (sqlite3_db_readonly(handle_, "main") == 1) {
+        sqlite3_close(handle_);
+        throw FileError(named, "can't be written: permission denied");
+    }
 }
 
 Database::~Database() {
@@ -27,6 +39,11 @@ Database::~Database() {
 
 void Database::run(const char* sql) {
     if (sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+}
+
+std::int64_t Database::number(const char* sql) {
+    Statement statement(*this, sql);
+    return statement.step() ? statement.integer(0) : 0;
 }
 
 void Database::fail() const {
@@ -39,9 +56,26 @@ void Database::fail() const {
             throw FormatError(path_, "library", problem);
         case SQLITE_FULL:
             throw FileError(path_, "no space left on the disk");
+        case SQLITE_BUSY:
+        case SQLITE_LOCKED:
+            throw FileError(path_, "another process is writing to it");
         default:
             throw FileError(path_, problem);
     }
+}
+
+Transaction::Transaction(Database& database) : database_(database) {
+    database_.run("BEGIN IMMEDIATE");
+}
+
+Transaction::~Transaction() {
+    // A failure to take back is of no consequence: the file does so when it is opened next.
+    if (open_) sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+void Transaction::commit() {
+    database_.run("COMMIT");
+    open_ = false;
 }
 
 Statement::Statement(Database& database, const char* sql) : database_(database) {
@@ -86,6 +120,23 @@ bool Statement::step() {
 void Statement::reset() {
     sqlite3_reset(statement_);
     sqlite3_clear_bindings(statement_);
+}
+
+std::variant<std::int64_t, double, std::string, std::vector<unsigned char>> Statement::cell(
+    int column) const {
+    switch (sqlite3_column_type(statement_, column)) {
+        case SQLITE_INTEGER:
+            return integer(column);
+        case SQLITE_FLOAT:
+            return real(column);
+        case SQLITE_TEXT:
+            return text(column);
+        case SQLITE_BLOB:
+            return blob<unsigned char>(column);
+        default:
+            throw InvalidInput(
+                fmt::format("column {} is empty", sqlite3_column_name(statement_, column)));
+    }
 }
 
 std::int64_t Statement::integer(int column) const {

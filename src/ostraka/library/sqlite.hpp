@@ -9,13 +9,17 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace ostraka {
 
 class Database {
   public:
-    enum class Mode { read, create };
+    /// `read` takes back what a killed writer left undone, if it may write; it changes nothing
+    /// else.
+    enum class Mode { read, edit, create };
+    /// Waits up to 20 s for another process that is writing.
     /// @throws FileError if the file can't be opened or created.
     /// @param named  what messages call the file.
     Database(const std::filesystem::path& path, Mode mode, const std::filesystem::path& named);
@@ -25,6 +29,8 @@ class Database {
 
     /// Runs statements without results. @throws FileError.
     void run(const char* sql);
+    /// First column of the first row; 0 if there is none. @throws FileError, FormatError.
+    std::int64_t number(const char* sql);
     sqlite3* handle() const { return handle_; }
     /// Throws what SQLite says about the last failure: FileError for the medium, FormatError for
     /// the content.
@@ -33,6 +39,21 @@ class Database {
   private:
     std::filesystem::path path_;
     sqlite3* handle_ = nullptr;
+};
+
+/// Changes that take effect together, by commit(), or not at all. No other process may write to the
+/// file in between.
+class Transaction {
+  public:
+    explicit Transaction(Database& database);
+    ~Transaction();
+    Transaction(const Transaction&) = delete;
+    Transaction& operator=(const Transaction&) = delete;
+    void commit();
+
+  private:
+    Database& database_;
+    bool open_ = true;
 };
 
 /// A prepared statement. Parameters count from 1, columns from 0, as in SQLite.
@@ -55,6 +76,9 @@ class Statement {
     /// Makes the statement ready for new parameters.
     void reset();
 
+    /// The value as it is stored: integer, real, text or blob. @throws InvalidInput for NULL.
+    std::variant<std::int64_t, double, std::string, std::vector<unsigned char>> cell(
+        int column) const;
     std::int64_t integer(int column) const;
     double real(int column) const;
     std::string text(int column) const;

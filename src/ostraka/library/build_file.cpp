@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/library/build_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ostraka/base/error.hpp"
+#include "ostraka/io/atomic_file.hpp"
+#include "ostraka/library/bags.hpp"
+#include "ostraka/library/build.hpp"
+#include "ostraka/library/library_copy.hpp"
+#include "ostraka/library/settings_text.hpp"
+
+namespace ostraka {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One process at a time may work on an unfinished build.
+void lock(LibraryStore& store) {
+    store.database().run("PRAGMA locking_mode=EXCLUSIVE; PRAGMA busy_timeout=0;");
+    // A kill can't hurt what the system has been handed; a power failure can, and then the
+    // checksums show it.
+    store.database().run("PRAGMA journal_mode=DELETE; PRAGMA synchronous=OFF;");
+    Transaction transaction(
+        store.database());  // takes the lock, which stays until the file is closed
+    transaction.commit();
+}
+
+LibraryStore start_anew(const fs::path& path, const LibrarySettings& settings) {
+    fs::remove(path);
+    fs::remove(path.string() + "-journal");
+    return LibraryStore::create(path, settings, path);
+}
+
+bool is_of(LibraryStore& store, const LibrarySettings& settings) {
+    return to_text(store.settings()) == to_text(settings);
+}
+
+// An unfinished build with these settings, or a new one.
+LibraryStore open_unfinished(const fs::path& path, const LibrarySettings& settings) {
+    if (fs::exists(path)) {
+        try {
+            LibraryStore store = LibraryStore::open(path, Database::Mode::edit);
+            lock(store);
+            if (is_of(store, settings)) return store;
+        } catch (const FormatError&) {
+            // Killed in its first moments, or of another version: nothing to go on from.
+        }
+    }
+    LibraryStore store = start_anew(path, settings);
+    lock(store);
+    return store;
+}
+
+// Models in the file that are none of these, or damaged, are removed. Returns what remains to do.
+std::vector<ModelInput> remaining(LibraryStore& store, std::span<const ModelInput> models) {
+    std::vector<ModelInput> missing(models.begin(), models.end());
+    Transaction transaction(store.database());
+    for (const StoredModel& stored : store.models()) {
+        const auto wanted = std::find_if(missing.begin(), missing.end(), [&](const auto& input) {
+            return input.name == stored.name;
+        });
+        bool usable = wanted != missing.end() && !stored.source_sha256.empty() &&
+                      wanted->sha256() == stored.source_sha256 && wanted->file == stored.file;
+        if (usable) {
+            try {
+                store.load(stored);
+            } catch (const Error&) {
+                usable = false;
+            }
+        }
+        if (usable) {
+            missing.erase(wanted);
+        } else {
+            store.remove(stored.name);
+        }
+    }
+    transaction.commit();
+    return missing;
+}
+
+BuildOutcome finish(LibraryStore& store, const fs::path& path, bool bags) {
+    BuildOutcome outcome;
+    outcome.settings = store.settings();
+    const std::vector<StoredModel> models = store.models();
+    for (const StoredModel& model : models) {
+        const Model loaded = store.load(model).model;
+        outcome.models.push_back({loaded.name, loaded.shape.diameter, loaded.counts});
+    }
+    ModelLibrary with_bags;
+    if (bags) {
+        with_bags = load_store(store);
+        make_bags(with_bags);
+    }
+    write_library(
+        path, store.settings(), models.size(), [&](std::size_t i) { return store.read(models[i]); },
+        bags ? &with_bags : nullptr);
+    return outcome;
+}
+
+}  // namespace
+
+fs::path unfinished_build(const fs::path& path) {
+    return path.parent_path() / fmt::format(".{}.unfinished", path.filename().string());
+}
+
+BuildOutcome build_library_file(std::span<const ModelInput> models, LibrarySettings settings,
+                                const fs::path& path, bool bags, const Progress& progress) {
+    if (models.empty()) throw InvalidInput("a library needs at least one model");
+    require_distinct_names(models);
+    { const AtomicFile writable(path); }  // better to fail now than after the build
+    if (settings.sampling == 0.0) settings.sampling = default_sampling(models);
+    settings = complete_settings(settings);
+    const fs::path unfinished = unfinished_build(path);
+    BuildOutcome outcome;
+    {
+        LibraryStore store = open_unfinished(unfinished, settings);
+        const std::vector<ModelInput> missing = remaining(store, models);
+        const auto keep = [&](const ModelRecord& record) {
+            Transaction transaction(store.database());
+            store.put(to_stored(record, settings));
+            store.seal();
+            transaction.commit();
+        };
+        build_records(missing, settings, keep, progress);
+        outcome = finish(store, path, bags);
+        outcome.resumed = models.size() - missing.size();
+        fs::remove(unfinished);  // while it is locked, so that no other build begins with it
+    }
+    return outcome;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/library/model_record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ostraka/base/error.hpp"
+
+namespace ostraka {
+
+ModelLibrary join_records(const LibrarySettings& settings, std::vector<ModelRecord> records) {
+    std::sort(records.begin(), records.end(),
+              [](const auto& a, const auto& b) { return a.model.name < b.model.name; });
+    ModelLibrary library;
+    library.settings = settings;
+    for (const AnyDescriptor& descriptor : settings.descriptors) {
+        library.tables.push_back({descriptor, {}});
+    }
+    for (ModelRecord& record : records) {
+        const std::string& name = record.model.name;
+        if (!library.models.empty() && library.models.back().name == name) {
+            throw InvalidInput(fmt::format("two models are named {}: names must differ", name));
+        }
+        for (Entry& entry : record.entries) {
+            entry.model = static_cast<std::uint32_t>(library.models.size());
+            library.entries.push_back(std::move(entry));
+        }
+        for (std::size_t t = 0; t < library.tables.size(); ++t) {
+            std::vector<float>& rows = library.tables[t].rows;
+            rows.insert(rows.end(), record.rows[t].begin(), record.rows[t].end());
+        }
+        library.models.push_back(std::move(record.model));
+    }
+    return library;
+}
+
+std::vector<ModelRecord> split_library(ModelLibrary library) {
+    std::vector<ModelRecord> records(library.models.size());
+    for (std::size_t m = 0; m < records.size(); ++m) {
+        records[m].model = std::move(library.models[m]);
+        records[m].rows.resize(library.tables.size());
+    }
+    for (std::size_t e = 0; e < library.entries.size(); ++e) {
+        ModelRecord& record = records[library.entries[e].model];
+        for (std::size_t t = 0; t < library.tables.size(); ++t) {
+            const std::size_t length = descriptor_length(library.tables[t].descriptor);
+            const auto row =
+                library.tables[t].rows.begin() + static_cast<std::ptrdiff_t>(e * length);
+            record.rows[t].insert(record.rows[t].end(), row,
+                                  row + static_cast<std::ptrdiff_t>(length));
+        }
+        library.entries[e].model = 0;
+        record.entries.push_back(std::move(library.entries[e]));
+    }
+    return records;
+}
+
+}  // namespace ostraka
