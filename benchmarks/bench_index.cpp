@@ -68,6 +68,7 @@ struct ByteSide {
     std::vector<std::uint8_t> library;
     std::vector<std::uint8_t> queries;
     std::size_t length = 0;
+    ByteScale scale;
     ByteRows rows() const { return {library, length}; }
     std::span<const std::uint8_t> query(std::size_t i) const {
         return std::span(queries).subspan(i * length, length);
@@ -175,24 +176,42 @@ void measure_loading(const ByteSide& bytes, const NeighborGraph& graph) {
     std::filesystem::remove(path);
 }
 
-std::vector<SearchMethod> our_methods(const ByteSide& bytes) {
+// Leaves the k matches that are nearest to the query before it was rounded.
+void refine(const IndexRows& rows, const ByteSide& bytes, std::size_t query,
+            std::vector<RowMatch>& matches, std::size_t k) {
+    const std::vector<float> distances =
+        decoded_distances(bytes.rows(), bytes.scale, rows.query(query), matches);
+    std::vector<std::pair<float, std::uint32_t>> order;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        order.emplace_back(distances[i], matches[i].row);
+    }
+    std::sort(order.begin(), order.end());
+    matches.resize(std::min(k, matches.size()));
+    for (std::size_t i = 0; i < matches.size(); ++i) matches[i].row = order[i].second;
+}
+
+std::vector<SearchMethod> our_methods(const IndexRows& rows, const ByteSide& bytes) {
+    const auto graph = std::make_shared<NeighborGraph>();
+    const auto scratch = std::make_shared<SearchScratch>();
     std::vector<SearchMethod> methods;
-    for (const int degree : {32, 48}) {
-        const auto graph = std::make_shared<NeighborGraph>();
-        const auto scratch = std::make_shared<SearchScratch>();
-        SearchMethod method{.name = fmt::format("ours, degree {}", degree)};
+    for (const bool refined : {false, true}) {
+        SearchMethod method{.name = refined ? "ours, the same graph, refined" : "ours"};
         method.breadths = {10, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
         method.build = [=, &bytes] {
-            *graph = build_neighbor_graph(bytes.rows(), {.degree = degree});
+            if (graph->degree > 0) return;
+            *graph = build_neighbor_graph(bytes.rows());
             measure_loading(bytes, *graph);
         };
         method.bytes = [=, &bytes] {
             return bytes.library.size() + graph->links.size() * sizeof(graph->links[0]);
         };
-        method.search = [=, &bytes](std::size_t query, std::size_t k, int breadth,
-                                    std::uint32_t* found) {
-            const auto matches = search_graph(*graph, bytes.rows(), bytes.query(query), k,
-                                              static_cast<std::size_t>(breadth), *scratch);
+        method.search = [=, &rows, &bytes](std::size_t query, std::size_t k, int breadth,
+                                           std::uint32_t* found) {
+            const auto wide = static_cast<std::size_t>(breadth);
+            const auto span = search_graph(*graph, bytes.rows(), bytes.query(query),
+                                           refined ? wide : k, wide, *scratch);
+            std::vector<RowMatch> matches(span.begin(), span.end());
+            if (refined) refine(rows, bytes, query, matches, k);
             for (std::size_t i = 0; i < matches.size(); ++i) found[i] = matches[i].row;
         };
         methods.push_back(method);
@@ -258,13 +277,13 @@ int run_all(const Options& options) {
     set_thread_count(options.threads);
     const IndexRows rows = index_rows(options.rows, options.queries, options.cache);
     ByteSide bytes{.length = rows.length};
-    const ByteScale scale = choose_scale(rows.library);
-    bytes.library = quantize(rows.library, scale);
-    bytes.queries = quantize(rows.queries, scale);
+    bytes.scale = choose_scale(rows.library);
+    bytes.library = quantize(rows.library, bytes.scale);
+    bytes.queries = quantize(rows.queries, bytes.scale);
     fmt::print("{} rows of {}, {} queries, k {}\n", rows.size(), rows.length, rows.query_count(),
                kNearest);
     const Truth truth = exact_truth(rows, bytes);
-    std::vector<SearchMethod> methods = our_methods(bytes);
+    std::vector<SearchMethod> methods = our_methods(rows, bytes);
     const int cores = static_cast<int>(std::thread::hardware_concurrency());
     const int threads = options.threads > 0 ? options.threads : std::max(1, cores);
     for (const auto& [name, peers] : {std::pair{"hnswlib", hnswlib_methods(rows)},

@@ -26,6 +26,7 @@ struct BuildOptions {
     std::string fractions;
     std::string descriptors;
     std::string shard;
+    std::string redundancy = "surface";
     bool bag_of_words = false;
     LibrarySettings settings;
 };
@@ -181,6 +182,7 @@ void run_build(BuildOptions& options) {
         settings.cuts.fractions = parse_numbers(options.fractions, "--fractions");
     }
     if (!options.descriptors.empty()) settings.descriptors = parse_descriptors(options.descriptors);
+    settings.selection.redundancy = *parse_redundancy(options.redundancy);
     const Shard shard = parse_shard(options.shard);
     std::vector<ModelInput> models;
     for (const std::string& path : options.models) {
@@ -193,7 +195,7 @@ void run_build(BuildOptions& options) {
         build_library_file(models, settings, options.output, options.bag_of_words, progress_bar());
     say_summary(built);
     if (built.resumed > 0) {
-        say(fmt::format("{} of {} models were there from an unfinished build", built.resumed,
+        say(fmt::format("{} of {} models came from an unfinished build", built.resumed,
                         built.models.size()));
     }
     say(fmt::format("{}: {} models, {} entries, sampling {:.4g} {}, {:.1f} MB, {:.1f} s",
@@ -233,6 +235,13 @@ void add_build(CLI::App& app) {
     command->add_flag("--full-views-only", settings.full_views_only,
                       "the traditional library: whole views, no subparts");
     command->add_option("--budget", settings.selection.budget, "entries kept for each model")
+        ->capture_default_str();
+    command
+        ->add_option("--redundancy", options->redundancy,
+                     "how entries are chosen: surface (those that cover most), icp (the study's: "
+                     "what ICP lays onto another is dropped) or none; with the latter two a budget "
+                     "of 0 keeps all")
+        ->check(CLI::IsMember({"surface", "icp", "none"}))
         ->capture_default_str();
     command->add_option("--seed", settings.seed, "seed of every random step")
         ->capture_default_str();

@@ -18,5 +18,6 @@ void add_views(CLI::App& app);
 void add_parts(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_evaluate(CLI::App& app);
+void add_evaluate_library(CLI::App& parent);  ///< of `ostraka evaluate`
 
 }  // namespace ostraka::app

@@ -38,7 +38,7 @@ void edit(const EditOptions& options, Edit change) {
 void tell(const EditOptions& options, const Stopwatch& watch, std::size_t present = 0) {
     const std::string& path = options.output.empty() ? options.library : options.output;
     const std::vector<std::string> models = model_names(path);
-    if (present > 0) say(fmt::format("{} models were in the library already", present));
+    if (present > 0) say(fmt::format("in the library already: {}", present));
     say(fmt::format("{}: {} models, {:.1f} s", path, models.size(), watch.seconds()));
     write_json({{"library", path}, {"models", models}, {"seconds", watch.seconds()}},
                options.common.json);

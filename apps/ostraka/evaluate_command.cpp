@@ -215,6 +215,7 @@ void add_evaluate(CLI::App& app) {
     command->require_subcommand(1);
     add_segments(*command);
     add_scenes(*command);
+    add_evaluate_library(*command);
 }
 
 }  // namespace ostraka::app

@@ -117,6 +117,10 @@ void add_symmetry(CLI::App& app) {
                      "how far a turned surface may be from itself, as a share of the diameter; at "
                      "most 0.05")
         ->capture_default_str();
+    command
+        ->add_option("--samples", options->settings.samples,
+                     "points that represent a surface; more see smaller holes in thin plates")
+        ->capture_default_str();
     command->add_flag("--outside", options->outside,
                       "judge only what can be seen from outside (for CAD models with inner faces "
                       "or wound at random; slower)");

@@ -124,6 +124,30 @@ TEST(Quantize, ClampsWhatLiesBeyondTheScale) {
     EXPECT_EQ(quantize(values, scale), (std::vector<std::uint8_t>{0, 0, 0, 2, 255, 255, 0}));
 }
 
+TEST(DecodedDistances, AreThoseOfDecodedRowsFromTheUnroundedQuery) {
+    Random random(6);
+    constexpr std::size_t kLength = 43;
+    const std::vector<std::uint8_t> bytes = random_bytes(20 * kLength, 7);
+    const ByteRows rows{bytes, kLength};
+    const ByteScale scale{.low = -0.2F, .step = 0.004F};
+    std::vector<float> query(kLength);
+    for (float& value : query) value = static_cast<float>(random.uniform(-0.3, 0.9));
+    const std::vector<RowMatch> matches = {{19, 0}, {0, 5}, {7, 0}};
+    const std::vector<float> distances = decoded_distances(rows, scale, query, matches);
+    ASSERT_EQ(distances.size(), matches.size());
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        double sum = 0.0;
+        for (std::size_t d = 0; d < kLength; ++d) {
+            const double value = -0.2 + 0.004 * rows.row(matches[i].row)[d];
+            sum += (query[d] - value) * (query[d] - value);
+        }
+        EXPECT_NEAR(distances[i], std::sqrt(sum), 1e-5);
+    }
+    const std::vector<RowMatch> beyond = {{20, 0}};
+    EXPECT_THROW(decoded_distances(rows, scale, query, beyond), InvalidInput);
+    EXPECT_THROW(decoded_distances(rows, scale, std::span(query).first(42), matches), InvalidInput);
+}
+
 TEST(ChooseScale, StartsAtZeroWithoutNegativeValues) {
     const std::vector<float> values = {0.2F, 0.9F, 0.4F, 0.51F};
     const ByteScale scale = choose_scale(values, 0.0);

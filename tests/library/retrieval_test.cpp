@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/cloud/normals.hpp"
@@ -18,8 +19,18 @@ const ModelLibrary& shared_library() {
     return library;
 }
 
+// A library whose entries have no spread, so that rows are compared with rows.
+const ModelLibrary& library_of_rows() {
+    static const ModelLibrary library = [] {
+        LibrarySettings settings = testing::quick_settings();
+        settings.selection.spread = false;
+        return build_library(testing::simple_models(), settings);
+    }();
+    return library;
+}
+
 TEST(EntryIndex, AnEntrysOwnRowIsNearestToIt) {
-    const ModelLibrary& library = shared_library();
+    const ModelLibrary& library = library_of_rows();
     const EntryIndex index(library);
     for (std::size_t t = 0; t < library.tables.size(); ++t) {
         const std::size_t length = descriptor_length(library.tables[t].descriptor);
@@ -107,8 +118,31 @@ TEST(PrepareSegment, KeepsTheWholeAndItsLargestPiece) {
     EXPECT_TRUE(prepare_segment({}, settings).empty());
 }
 
-TEST(EntryIndex, EveryMetricFindsAnEntrysOwnRow) {
+// What an entry stands for holds its own row, or nearly so, and more.
+TEST(EntryIndex, SpreadsBringEntriesNearer) {
     const ModelLibrary& library = shared_library();
+    ModelLibrary bare = library;
+    for (DescriptorTable& table : bare.tables) table.spread = {};
+    const EntryIndex with(library);
+    const EntryIndex without(bare);
+    for (std::size_t t = 0; t < library.tables.size(); ++t) {
+        ASSERT_FALSE(library.tables[t].spread.empty());
+        const std::size_t length = descriptor_length(library.tables[t].descriptor);
+        double own = 0.0;
+        double others = 0.0;
+        for (std::size_t i = 0; i < library.entries.size(); ++i) {
+            const auto row =
+                std::span<const float>(library.tables[t].rows).subspan(i * length, length);
+            own += double{with.distances(t, row)[i]};
+            const auto far = without.distances(t, row);
+            others += std::accumulate(far.begin(), far.end(), 0.0) / double(far.size() - 1);
+        }
+        EXPECT_LT(own, 0.5 * others) << t;
+    }
+}
+
+TEST(EntryIndex, EveryMetricFindsAnEntrysOwnRow) {
+    const ModelLibrary& library = library_of_rows();
     for (const Metric metric : {Metric::l1, Metric::l2, Metric::chi_square, Metric::hellinger}) {
         const EntryIndex index(library, metric);
         const auto row = std::span<const float>(library.tables[0].rows).subspan(308, 308);

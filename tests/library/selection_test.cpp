@@ -111,5 +111,64 @@ TEST(SelectEntries, NothingFromNothing) {
     EXPECT_TRUE(select_entries({}, {}).chosen.empty());
 }
 
+TEST(SelectEntries, EveryKeptCandidateKnowsWhoShowsMostOfIt) {
+    const auto sets = random_sets(60, 11);
+    const SelectionResult result = select_entries(sets, {.budget = 8});
+    ASSERT_EQ(result.nearest.size(), sets.size());
+    std::size_t redundant = 0;
+    for (std::uint32_t i = 0; i < sets.size(); ++i) {
+        if (result.nearest[i] == kNoIndex) {
+            ++redundant;
+            continue;
+        }
+        const double own = overlap(sets[i], sets[result.chosen[result.nearest[i]]]);
+        for (const std::uint32_t c : result.chosen)
+            EXPECT_LE(overlap(sets[i], sets[c]), own + 1e-6);
+    }
+    EXPECT_EQ(redundant, result.redundant);
+    for (std::uint32_t c = 0; c < result.chosen.size(); ++c) {
+        EXPECT_EQ(result.nearest[result.chosen[c]], c);
+    }
+}
+
+TEST(SelectEntries, CoverageIsReportedByOverlap) {
+    const auto sets = random_sets(40, 3);
+    const SelectionResult all = select_entries(sets, {.budget = 40, .max_overlap = 2.0});
+    for (const double share : all.covered) EXPECT_DOUBLE_EQ(share, 1.0);
+    const SelectionResult few = select_entries(sets, {.budget = 4, .max_overlap = 2.0});
+    for (std::size_t level = 0; level < few.covered.size(); ++level) {
+        int covered = 0;
+        for (const ElementSet& set : sets) {
+            double best = 0.0;
+            for (const std::uint32_t c : few.chosen) best = std::max(best, overlap(set, sets[c]));
+            covered += best >= kCoveredOverlaps[level] - 1e-7 ? 1 : 0;
+        }
+        EXPECT_NEAR(few.covered[level], covered / 40.0, 1e-9);
+    }
+}
+
+// Two halves of a surface that a half turn exchanges.
+TEST(SelectEntries, WhatASymmetryExchangesIsRedundant) {
+    ElementMap half_turn(kSurfaceElements);
+    for (std::uint32_t i = 0; i < kSurfaceElements; ++i) {
+        half_turn[i] = (i + kSurfaceElements / 2) % kSurfaceElements;
+    }
+    const std::vector<ElementMap> images = {half_turn};
+    const std::vector<ElementSet> sets = {range_set(0, 100), range_set(512, 612),
+                                          range_set(200, 300), range_set(712, 812)};
+    EXPECT_EQ(mapped(sets[0], half_turn), sets[1]);
+    EXPECT_EQ(select_entries(sets, {.budget = 4}).chosen.size(), 4U);
+    const SelectionResult result = select_entries(sets, {.budget = 4}, images);
+    EXPECT_EQ(result.chosen, (std::vector<std::uint32_t>{0, 2}));
+    EXPECT_DOUBLE_EQ(result.coverage, 1.0);
+}
+
+TEST(ThinOut, SpreadsEvenly) {
+    EXPECT_EQ(thin_out(10, 5), (std::vector<std::uint32_t>{0, 2, 4, 6, 8}));
+    EXPECT_EQ(thin_out(3, 0).size(), 3U);
+    EXPECT_EQ(thin_out(3, 7).size(), 3U);
+    EXPECT_TRUE(thin_out(0, 4).empty());
+}
+
 }  // namespace
 }  // namespace ostraka

@@ -39,7 +39,10 @@ constexpr std::size_t kModelsInFlight = 8;
 
 LibrarySettings complete_settings(LibrarySettings settings) {
     if (!(settings.sampling > 0.0)) throw InvalidInput("sampling must be positive");
-    if (settings.selection.budget < 1) throw InvalidInput("budget must be at least 1");
+    const bool unlimited = settings.selection.redundancy != Redundancy::surface;
+    if (settings.selection.budget < (unlimited ? 0 : 1)) {
+        throw InvalidInput("budget must be at least 1");
+    }
     for (const double fraction : settings.cuts.fractions) {
         if (!(fraction > 0.0 && fraction < 1.0)) {
             throw InvalidInput(fmt::format("cut fraction {:g} is not between 0 and 1", fraction));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/io/atomic_file.hpp"
@@ -28,9 +29,13 @@ void lock(LibraryStore& store) {
     transaction.commit();
 }
 
-LibraryStore start_anew(const fs::path& path, const LibrarySettings& settings) {
+void remove_build(const fs::path& path) {
     fs::remove(path);
     fs::remove(path.string() + "-journal");
+}
+
+LibraryStore start_anew(const fs::path& path, const LibrarySettings& settings) {
+    remove_build(path);
     return LibraryStore::create(path, settings, path);
 }
 
@@ -81,6 +86,12 @@ std::vector<ModelInput> remaining(LibraryStore& store, std::span<const ModelInpu
     return missing;
 }
 
+// An unfinished build that is being worked on.
+struct Work {
+    std::optional<LibraryStore> store;
+    std::size_t done = 0;  // models in it
+};
+
 BuildOutcome finish(LibraryStore& store, const fs::path& path, bool bags) {
     BuildOutcome outcome;
     outcome.settings = store.settings();
@@ -114,22 +125,29 @@ BuildOutcome build_library_file(std::span<const ModelInput> models, LibrarySetti
     if (settings.sampling == 0.0) settings.sampling = default_sampling(models);
     settings = complete_settings(settings);
     const fs::path unfinished = unfinished_build(path);
-    BuildOutcome outcome;
-    {
-        LibraryStore store = open_unfinished(unfinished, settings);
-        const std::vector<ModelInput> missing = remaining(store, models);
+    Work work{open_unfinished(unfinished, settings)};
+    try {
+        const std::vector<ModelInput> missing = remaining(*work.store, models);
+        work.done = models.size() - missing.size();
+        const std::size_t resumed = work.done;
         const auto keep = [&](const ModelRecord& record) {
-            Transaction transaction(store.database());
-            store.put(to_stored(record, settings));
-            store.seal();
+            Transaction transaction(work.store->database());
+            work.store->put(to_stored(record, settings));
+            work.store->seal();
             transaction.commit();
+            ++work.done;
         };
         build_records(missing, settings, keep, progress);
-        outcome = finish(store, path, bags);
-        outcome.resumed = models.size() - missing.size();
+        BuildOutcome outcome = finish(*work.store, path, bags);
+        outcome.resumed = resumed;
         fs::remove(unfinished);  // while it is locked, so that no other build begins with it
+        return outcome;
+    } catch (...) {
+        // Worth keeping only if something is done.
+        work.store.reset();
+        if (work.done == 0) remove_build(unfinished);
+        throw;
     }
-    return outcome;
 }
 
 }  // namespace ostraka

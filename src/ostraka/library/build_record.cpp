@@ -15,8 +15,19 @@
 namespace ostraka {
 namespace {
 
+constexpr std::size_t kLeastSurface = 100;  // points on which a symmetry can be judged
+
 // From the canonical frame, in which a model is looked at, to the frame of its file.
 void to_model_frame(ModelRecord& built, const Pose& T_model_canonical) {
+    Symmetry& symmetry = built.model.symmetry;
+    symmetry.center = T_model_canonical * symmetry.center;
+    for (Pose& turn : symmetry.turns) {
+        turn = T_model_canonical * turn * T_model_canonical.inverse();
+    }
+    for (ContinuousAxis& axis : symmetry.axes) {
+        axis.direction = T_model_canonical.linear() * axis.direction;
+        axis.point = T_model_canonical * axis.point;
+    }
     const Mat3f R_model_canonical = T_model_canonical.linear().cast<float>();
     built.model.surface = transformed(built.model.surface, T_model_canonical);
     for (Vec3f& point : built.model.keypoints.points) {
@@ -27,6 +38,62 @@ void to_model_frame(ModelRecord& built, const Pose& T_model_canonical) {
         entry.cloud = transformed(entry.cloud, T_model_canonical);
         entry.frame.T_cloud_frame = T_model_canonical * entry.frame.T_cloud_frame;
     }
+}
+
+// What entries stand for is averaged over many pieces, each of which needs less care: with a
+// quarter of ESF's samples, which would take most of a build's time, recognition rates are the
+// same.
+LibrarySettings for_companions(LibrarySettings settings) {
+    for (AnyDescriptor& descriptor : settings.descriptors) {
+        if (auto* esf = std::get_if<EsfSettings>(&descriptor)) esf->samples /= 4;
+    }
+    return settings;
+}
+
+// All descriptors of a piece in turn: its points are in the cache, and items are of one size.
+std::vector<std::vector<float>> describe_all(const PointCloud& cloud,
+                                             const PieceTriangles& triangles,
+                                             const LibrarySettings& settings) {
+    std::vector<std::vector<float>> rows;
+    for (const AnyDescriptor& descriptor : settings.descriptors) {
+        rows.push_back(std::holds_alternative<GlobalRopsSettings>(descriptor)
+                           ? describe_global_rops(cloud, triangles)
+                           : describe(cloud, descriptor));
+    }
+    return rows;
+}
+
+void describe_entries(ModelRecord& record, const Choice& choice, const LibrarySettings& settings) {
+    const std::vector<Companion>& companions = choice.companions;
+    const std::size_t entries = record.entries.size();
+    const LibrarySettings coarse = for_companions(settings);
+    std::vector<std::vector<std::vector<float>>> described(entries + companions.size());
+    parallel_for(described.size(), [&](std::size_t i) {
+        described[i] = i < entries
+                           ? describe_all(record.entries[i].cloud, choice.triangles[i], settings)
+                           : describe_all(companions[i - entries].cloud,
+                                          companions[i - entries].triangles, coarse);
+    });
+    std::vector<std::vector<std::size_t>> members(entries);  // of each entry: itself, companions
+    for (std::size_t i = 0; i < described.size(); ++i) {
+        members[i < entries ? i : companions[i - entries].entry].push_back(i);
+    }
+    record.rows.resize(settings.descriptors.size());
+    record.spreads.resize(settings.descriptors.size());
+    parallel_for(settings.descriptors.size(), [&](std::size_t t) {
+        const Metric metric = best_metric(settings.descriptors[t]);
+        for (std::size_t e = 0; e < entries; ++e) {
+            const std::vector<float>& own = described[e][t];
+            record.rows[t].insert(record.rows[t].end(), own.begin(), own.end());
+            if (companions.empty()) continue;
+            std::vector<float> rows;
+            for (const std::size_t i : members[e]) {
+                const std::vector<float> row = comparable_row(described[i][t], metric);
+                rows.insert(rows.end(), row.begin(), row.end());
+            }
+            append_spread(rows, own.size(), record.spreads[t]);
+        }
+    });
 }
 
 ModelRecord look_at(const ModelSource& source, const LibrarySettings& settings,
@@ -59,9 +126,14 @@ ModelRecord look_at(const ModelSource& source, const LibrarySettings& settings,
         throw InvalidInput(fmt::format("model {}: nothing of it can be seen at sampling {:.6g}",
                                        model.name, settings.sampling));
     }
-    built.entries = choose_entries(views, model.surface, settings, model.counts);
+    if (model.surface.size() >= kLeastSurface) {
+        model.symmetry = find_symmetry(model.surface, 2.0 * model.shape.radius);
+    }
+    Choice choice = choose_entries(views, model.surface, model.symmetry, settings, model.counts);
+    built.entries = std::move(choice.entries);
     model.keypoints = describe_keypoints(model.surface, views, settings);
     to_model_frame(built, T_model_canonical);
+    describe_entries(built, choice, settings);
     return built;
 }
 
@@ -73,28 +145,11 @@ void strip(Entry& entry, const MeshShape& shape) {
     }
 }
 
-void describe_entries(ModelRecord& record, const LibrarySettings& settings) {
-    const std::size_t count = record.entries.size();
-    for (const AnyDescriptor& descriptor : settings.descriptors) {
-        record.rows.emplace_back(count * descriptor_length(descriptor));
-    }
-    // All descriptors of an entry in turn: its points are in the cache, and items are of one size.
-    parallel_for(count, [&](std::size_t i) {
-        for (std::size_t t = 0; t < record.rows.size(); ++t) {
-            const std::vector<float> row =
-                describe(record.entries[i].cloud, settings.descriptors[t]);
-            std::copy(row.begin(), row.end(),
-                      record.rows[t].begin() + static_cast<std::ptrdiff_t>(i * row.size()));
-        }
-    });
-}
-
 }  // namespace
 
 ModelRecord build_record(const ModelSource& source, const LibrarySettings& settings,
                          const std::function<void(std::size_t)>& step) {
     ModelRecord record = look_at(source, settings, step);
-    describe_entries(record, settings);
     for (Entry& entry : record.entries) strip(entry, record.model.shape);
     return record;
 }

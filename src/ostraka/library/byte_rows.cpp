@@ -119,6 +119,26 @@ void in_range(const std::uint8_t* rows, std::size_t length, const std::uint8_t* 
 }
 #endif
 
+// Eight partial sums in a fixed order, so that the compiler may vectorize and the bits stay the
+// same. @param query  in steps of the scale, from its low end.
+OSTRAKA_VECTOR_CLONES
+float squared_steps(const std::uint8_t* row, const float* query, std::size_t length) {
+    std::array<float, 8> sums{};
+    std::size_t i = 0;
+    for (; i + 8 <= length; i += 8) {
+        for (std::size_t lane = 0; lane < 8; ++lane) {
+            const float difference = query[i + lane] - static_cast<float>(row[i + lane]);
+            sums[lane] += difference * difference;
+        }
+    }
+    for (; i < length; ++i) {
+        const float difference = query[i] - static_cast<float>(row[i]);
+        sums[i % 8] += difference * difference;
+    }
+    return ((sums[0] + sums[4]) + (sums[2] + sums[6])) +
+           ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+}
+
 // The k nearest of the rows from `first` on, in order.
 std::vector<RowMatch> nearest_in_block(const ByteRows& rows, const std::uint8_t* query,
                                        std::size_t first, std::size_t k) {
@@ -215,6 +235,27 @@ std::int32_t squared_distance(const std::uint8_t* a, const std::uint8_t* b, std:
     std::int32_t distance = 0;
     in_range(a, length, b, 1, &distance);
     return distance;
+}
+
+std::vector<float> decoded_distances(const ByteRows& rows, const ByteScale& scale,
+                                     std::span<const float> query,
+                                     std::span<const RowMatch> matches) {
+    if (query.size() != rows.length) {
+        throw InvalidInput(fmt::format("a query of {} values can't be compared with rows of {}",
+                                       query.size(), rows.length));
+    }
+    std::vector<float> steps(query.size());
+    for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = (query[i] - scale.low) / scale.step;
+    std::vector<float> distances(matches.size());
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        if (matches[i].row >= rows.size()) {
+            throw InvalidInput(fmt::format("a match is row {} of {}", matches[i].row, rows.size()));
+        }
+        const float squared =
+            squared_steps(rows.row(matches[i].row).data(), steps.data(), rows.length);
+        distances[i] = scale.step * std::sqrt(squared);
+    }
+    return distances;
 }
 
 std::vector<RowMatch> exact_nearest(const ByteRows& rows, std::span<const std::uint8_t> query,

@@ -72,6 +72,17 @@ void squared_distances(const ByteRows& rows, const std::uint8_t* query,
 /// Squared distance of two rows of `length` bytes.
 std::int32_t squared_distance(const std::uint8_t* a, const std::uint8_t* b, std::size_t length);
 
+/// L2 distances, in the unit of values, of a query from rows as the scale decodes them. The query
+/// is not rounded, which makes half of the error of comparing bytes: for a last look at what a
+/// search found.
+/// @param query    rows.length values, as comparable_row() gives them.
+/// @param matches  of a search; their distances are not used.
+/// @return one for each match, the same bits on every machine.
+/// @throws InvalidInput if the query has another length or a match is no row's.
+std::vector<float> decoded_distances(const ByteRows& rows, const ByteScale& scale,
+                                     std::span<const float> query,
+                                     std::span<const RowMatch> matches);
+
 /// The k nearest of all rows by looking at each; nearest first, ties by index.
 /// @param query  rows.length bytes.
 /// @return min(k, rows.size()) matches; the same for any number of threads.

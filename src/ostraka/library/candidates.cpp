@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/library/candidates.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <numeric>
 
 #include "ostraka/base/parallel.hpp"
+#include "ostraka/library/icp_redundancy.hpp"
 #include "ostraka/library/surface_elements.hpp"
+#include "ostraka/mesh/symmetry_poses.hpp"
 
 namespace ostraka {
 namespace {
+
+constexpr int kAxisSteps = 12;           // turns about a continuous axis that stand for all
+constexpr std::size_t kMostImages = 24;  // symmetric images that a piece is compared with
 
 // A whole view or a subpart of one, before it is chosen.
 struct Candidate {
@@ -55,38 +61,151 @@ Entry make_entry(const Candidate& candidate, const ModelView& view) {
     return entry;
 }
 
+// The candidates of all views, and what each shows.
+struct Pool {
+    std::vector<Candidate> candidates;
+    std::vector<ElementSet> shown;
+};
+
+Pool gather(std::vector<ViewCandidates>& of_view, BuildCounts& counts) {
+    Pool pool;
+    for (ViewCandidates& view : of_view) {
+        std::move(view.candidates.begin(), view.candidates.end(),
+                  std::back_inserter(pool.candidates));
+        pool.shown.insert(pool.shown.end(), view.shown.begin(), view.shown.end());
+        counts.cuts += static_cast<int>(view.made);
+        counts.too_small += static_cast<int>(view.too_small);
+    }
+    return pool;
+}
+
+std::vector<ElementMap> images(const SurfaceElements& elements, const Symmetry& symmetry) {
+    std::vector<ElementMap> maps;
+    if (!symmetry.any()) return maps;
+    const std::vector<Pose> motions = symmetry_motions(symmetry, kAxisSteps);
+    for (const std::uint32_t i : thin_out(motions.size(), kMostImages)) {
+        if (!motions[i].isApprox(Pose::Identity(), 1e-9)) maps.push_back(elements.map(motions[i]));
+    }
+    return maps;
+}
+
+// Of the candidates in `kept`, as many as the budget allows.
+SelectionResult thinned(const std::vector<std::uint32_t>& kept, std::size_t total, int budget) {
+    SelectionResult result;
+    for (const std::uint32_t i : thin_out(kept.size(), static_cast<std::size_t>(budget))) {
+        result.chosen.push_back(kept[i]);
+    }
+    result.redundant = total - kept.size();
+    result.beyond_budget = kept.size() - result.chosen.size();
+    return result;
+}
+
+SelectionResult select(const Pool& pool, std::span<const ModelView> views,
+                       const SurfaceElements& elements, const Symmetry& symmetry,
+                       const LibrarySettings& settings) {
+    const std::size_t total = pool.candidates.size();
+    std::vector<std::uint32_t> all(total);
+    std::iota(all.begin(), all.end(), 0U);
+    if (settings.full_views_only) return thinned(all, total, 0);
+    switch (settings.selection.redundancy) {
+        case Redundancy::none:
+            return thinned(all, total, settings.selection.budget);
+        case Redundancy::icp: {
+            std::vector<PointCloud> clouds(total);
+            parallel_for(total, [&](std::size_t i) {
+                const Candidate& candidate = pool.candidates[i];
+                clouds[i] = ostraka::select(views[candidate.view].cloud, candidate.indices);
+            });
+            return thinned(drop_by_icp(clouds, settings.sampling), total,
+                           settings.selection.budget);
+        }
+        case Redundancy::surface:
+            break;
+    }
+    return select_entries(pool.shown, settings.selection, images(elements, symmetry));
+}
+
+bool needs_triangles(const LibrarySettings& settings) {
+    return std::any_of(settings.descriptors.begin(), settings.descriptors.end(),
+                       [](const AnyDescriptor& descriptor) {
+                           return std::holds_alternative<GlobalRopsSettings>(descriptor);
+                       });
+}
+
+// Those of a view whose corners are all in a piece of it.
+PieceTriangles triangles_within(const PieceTriangles& of_view, std::size_t points,
+                                const std::vector<std::uint32_t>& piece) {
+    std::vector<std::uint32_t> place(points, kNoIndex);
+    for (std::uint32_t i = 0; i < piece.size(); ++i) place[piece[i]] = i;
+    PieceTriangles result;
+    for (const IndexTriangle& triangle : of_view) {
+        const IndexTriangle moved = {place[triangle[0]], place[triangle[1]], place[triangle[2]]};
+        if (std::find(moved.begin(), moved.end(), kNoIndex) == moved.end()) result.push_back(moved);
+    }
+    return result;
+}
+
+// Of each view; empty ones if no descriptor needs any.
+std::vector<PieceTriangles> triangulate_views(std::span<const ModelView> views,
+                                              const LibrarySettings& settings) {
+    std::vector<PieceTriangles> triangles(views.size());
+    if (!needs_triangles(settings)) return triangles;
+    parallel_for(views.size(), [&](std::size_t v) {
+        if (views[v].cloud.size() >= 3) triangles[v] = triangulate(views[v].cloud);
+    });
+    return triangles;
+}
+
+// The chosen candidates excepted: they are entries.
+std::vector<Companion> companions(const Pool& pool, const SelectionResult& selected,
+                                  std::span<const ModelView> views,
+                                  std::span<const PieceTriangles> triangles) {
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t i = 0; i < selected.nearest.size(); ++i) {
+        const std::uint32_t entry = selected.nearest[i];
+        if (entry != kNoIndex && selected.chosen[entry] != i) numbers.push_back(i);
+    }
+    std::vector<Companion> result(numbers.size());
+    parallel_for(result.size(), [&](std::size_t c) {
+        const Candidate& candidate = pool.candidates[numbers[c]];
+        const PointCloud& view = views[candidate.view].cloud;
+        result[c] = {selected.nearest[numbers[c]], select(view, candidate.indices),
+                     triangles_within(triangles[candidate.view], view.size(), candidate.indices)};
+    });
+    return result;
+}
+
 }  // namespace
 
-std::vector<Entry> choose_entries(std::span<const ModelView> views, const PointCloud& surface,
-                                  const LibrarySettings& settings, BuildCounts& counts) {
+Choice choose_entries(std::span<const ModelView> views, const PointCloud& surface,
+                      const Symmetry& symmetry, const LibrarySettings& settings,
+                      BuildCounts& counts) {
     const SurfaceElements elements(surface);
     std::vector<ViewCandidates> of_view(views.size());
     parallel_for(views.size(), [&](std::size_t v) {
         if (views[v].cloud.size() < 3) return;  // an edge-on plate may show next to nothing
         of_view[v] = candidates_of(views[v], v, elements, settings);
     });
-    std::vector<Candidate> candidates;
-    std::vector<ElementSet> shown;
-    for (ViewCandidates& view : of_view) {
-        std::move(view.candidates.begin(), view.candidates.end(), std::back_inserter(candidates));
-        shown.insert(shown.end(), view.shown.begin(), view.shown.end());
-        counts.cuts += static_cast<int>(view.made);
-        counts.too_small += static_cast<int>(view.too_small);
-    }
-    SelectionSettings selection = settings.selection;
-    if (settings.full_views_only) selection = {.budget = settings.views.count, .max_overlap = 2.0};
-    const SelectionResult selected = select_entries(shown, selection);
+    const Pool pool = gather(of_view, counts);
+    const SelectionResult selected = select(pool, views, elements, symmetry, settings);
     counts.views = static_cast<int>(views.size());
     counts.redundant = static_cast<int>(selected.redundant);
     counts.beyond_budget = static_cast<int>(selected.beyond_budget);
     counts.kept = static_cast<int>(selected.chosen.size());
     counts.coverage = selected.coverage;
     counts.covered = selected.covered;
-    std::vector<Entry> entries;
+    const std::vector<PieceTriangles> triangles = triangulate_views(views, settings);
+    Choice choice;
     for (const std::uint32_t i : selected.chosen) {
-        entries.push_back(make_entry(candidates[i], views[candidates[i].view]));
+        const Candidate& candidate = pool.candidates[i];
+        choice.entries.push_back(make_entry(candidate, views[candidate.view]));
+        choice.triangles.push_back(triangles_within(
+            triangles[candidate.view], views[candidate.view].cloud.size(), candidate.indices));
     }
-    return entries;
+    if (settings.selection.spread) {
+        choice.companions = companions(pool, selected, views, triangles);
+    }
+    return choice;
 }
 
 }  // namespace ostraka

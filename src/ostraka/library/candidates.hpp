@@ -5,15 +5,37 @@
 #include <span>
 #include <vector>
 
+#include "ostraka/descriptors/triangulation.hpp"
 #include "ostraka/library/model_library.hpp"
 #include "ostraka/views/model_views.hpp"
 
 namespace ostraka {
 
+/// Indices into a piece's points. Views are triangulated once, for all pieces of them: piece by
+/// piece it would take most of the time of a build.
+using PieceTriangles = std::vector<IndexTriangle>;
+
+/// A candidate that was not chosen, and the entry that shows most of what it shows.
+struct Companion {
+    std::uint32_t entry = 0;  ///< index into Choice::entries
+    PointCloud cloud;         ///< with normals
+    PieceTriangles triangles;
+};
+
+struct Choice {
+    std::vector<Entry> entries;
+    std::vector<PieceTriangles>
+        triangles;  ///< of each entry; empty ones if no descriptor needs any
+    std::vector<Companion>
+        companions;  ///< without redundant ones; none where no spread is asked for
+};
+
 /// @param views    of the model; clouds with normals, in the frame that it is looked at in.
 /// @param surface  merge_surface() of them, in the same frame.
+/// @param symmetry of the model, in the same frame.
 /// @param counts   filled in.
-std::vector<Entry> choose_entries(std::span<const ModelView> views, const PointCloud& surface,
-                                  const LibrarySettings& settings, BuildCounts& counts);
+Choice choose_entries(std::span<const ModelView> views, const PointCloud& surface,
+                      const Symmetry& symmetry, const LibrarySettings& settings,
+                      BuildCounts& counts);
 
 }  // namespace ostraka

@@ -176,6 +176,8 @@ ModelLibrary load_content(Database& database) {
     SettingTexts texts;
     Statement settings(database, "SELECT key, value FROM setting");
     while (settings.step()) texts[settings.text(0)] = settings.text(1);
+    texts.try_emplace("selection.redundancy", "surface");
+    texts.try_emplace("selection.spread", "false");
     ModelLibrary library;
     library.settings = settings_from_text(texts);
     Statement models(database, "SELECT * FROM model ORDER BY id");
@@ -188,9 +190,10 @@ ModelLibrary load_content(Database& database) {
     Statement entries(database, "SELECT * FROM entry ORDER BY id");
     while (entries.step()) library.entries.push_back(load_entry_row(entries, library.models));
     for (const AnyDescriptor& descriptor : library.settings.descriptors) {
-        library.tables.push_back(
-            {descriptor, load_rows(database, descriptor_name(descriptor),
-                                   descriptor_length(descriptor), library.entries.size())});
+        library.tables.push_back({descriptor,
+                                  load_rows(database, descriptor_name(descriptor),
+                                            descriptor_length(descriptor), library.entries.size()),
+                                  {}});
     }
     library.codebook = load_codebook(database);
     if (library.codebook.size() > 0) {

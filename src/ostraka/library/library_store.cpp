@@ -27,7 +27,8 @@ CREATE TABLE entry(model INTEGER NOT NULL REFERENCES model(id), number INTEGER N
     viewpoint BLOB NOT NULL, frame BLOB NOT NULL, ambiguity INTEGER NOT NULL, points BLOB NOT NULL,
     PRIMARY KEY(model, number));
 CREATE TABLE descriptor(model INTEGER NOT NULL REFERENCES model(id), name TEXT NOT NULL,
-    rows BLOB NOT NULL, PRIMARY KEY(model, name));
+    rows BLOB NOT NULL, means BLOB NOT NULL, directions BLOB NOT NULL, scales BLOB NOT NULL,
+    PRIMARY KEY(model, name));
 CREATE TABLE codebook(word INTEGER PRIMARY KEY, row BLOB NOT NULL);
 CREATE TABLE bag(model INTEGER PRIMARY KEY REFERENCES model(id), rows BLOB NOT NULL);
 )sql";
@@ -204,9 +205,12 @@ StoredRecord LibraryStore::read(const StoredModel& model) {
         record.entries.push_back(read_row(entries, 1, kEntryColumns));
     }
     Statement descriptors(*database_,
-                          "SELECT name, rows FROM descriptor WHERE model=? ORDER BY name");
+                          "SELECT name, rows, means, directions, scales FROM descriptor"
+                          " WHERE model=? ORDER BY name");
     descriptors.bind(1, model.id);
-    while (descriptors.step()) record.descriptors.push_back(read_row(descriptors, 0, 2));
+    while (descriptors.step()) {
+        record.descriptors.push_back(read_row(descriptors, 0, kDescriptorColumns));
+    }
     return record;
 }
 
@@ -227,7 +231,7 @@ void LibraryStore::put(const StoredRecord& record) {
     Statement entry(*database_, insertion("entry", 2 + kEntryColumns).c_str());
     std::int64_t number = 0;
     for (const Row& row : record.entries) insert_row(entry, {id, number++}, row);
-    Statement descriptor(*database_, "INSERT INTO descriptor VALUES(?,?,?)");
+    Statement descriptor(*database_, insertion("descriptor", 1 + kDescriptorColumns).c_str());
     for (const Row& row : record.descriptors) insert_row(descriptor, {id}, row);
 }
 

@@ -11,7 +11,9 @@
 #include "ostraka/cloud/principal_frame.hpp"
 #include "ostraka/descriptors/bag_of_words.hpp"
 #include "ostraka/library/library_settings.hpp"
+#include "ostraka/library/spread.hpp"
 #include "ostraka/mesh/shape.hpp"
+#include "ostraka/mesh/symmetry.hpp"
 
 namespace ostraka {
 
@@ -46,6 +48,7 @@ struct Model {
     std::string sha256;  ///< provenance: digest of the file
     TriangleMesh mesh;   ///< repaired; model frame, library unit
     MeshShape shape;     ///< measure() of the mesh
+    Symmetry symmetry;   ///< of what can be seen of it; model frame, library unit
     PointCloud
         surface;  ///< what can be seen from outside: points about `sampling` apart, normals outward
     Keypoints keypoints;
@@ -67,7 +70,8 @@ struct Entry {
 struct DescriptorTable {
     AnyDescriptor descriptor;
     std::vector<float>
-        rows;  ///< entries x descriptor_length(), row-major, as described (no transform)
+        rows;       ///< entries x descriptor_length(), row-major, as described (no transform)
+    Spread spread;  ///< how the observations that each entry stands for vary; may be empty
 };
 
 struct ModelLibrary {

@@ -15,7 +15,7 @@ ModelLibrary join_records(const LibrarySettings& settings, std::vector<ModelReco
     ModelLibrary library;
     library.settings = settings;
     for (const AnyDescriptor& descriptor : settings.descriptors) {
-        library.tables.push_back({descriptor, {}});
+        library.tables.push_back({descriptor, {}, {}});
     }
     for (ModelRecord& record : records) {
         const std::string& name = record.model.name;
@@ -29,6 +29,7 @@ ModelLibrary join_records(const LibrarySettings& settings, std::vector<ModelReco
         for (std::size_t t = 0; t < library.tables.size(); ++t) {
             std::vector<float>& rows = library.tables[t].rows;
             rows.insert(rows.end(), record.rows[t].begin(), record.rows[t].end());
+            library.tables[t].spread.append(record.spreads[t]);
         }
         library.models.push_back(std::move(record.model));
     }
@@ -37,21 +38,23 @@ ModelLibrary join_records(const LibrarySettings& settings, std::vector<ModelReco
 
 std::vector<ModelRecord> split_library(ModelLibrary library) {
     std::vector<ModelRecord> records(library.models.size());
+    std::size_t first = 0;
     for (std::size_t m = 0; m < records.size(); ++m) {
-        records[m].model = std::move(library.models[m]);
-        records[m].rows.resize(library.tables.size());
-    }
-    for (std::size_t e = 0; e < library.entries.size(); ++e) {
-        ModelRecord& record = records[library.entries[e].model];
-        for (std::size_t t = 0; t < library.tables.size(); ++t) {
-            const std::size_t length = descriptor_length(library.tables[t].descriptor);
-            const auto row =
-                library.tables[t].rows.begin() + static_cast<std::ptrdiff_t>(e * length);
-            record.rows[t].insert(record.rows[t].end(), row,
-                                  row + static_cast<std::ptrdiff_t>(length));
+        ModelRecord& record = records[m];
+        record.model = std::move(library.models[m]);
+        std::size_t last = first;
+        for (; last < library.entries.size() && library.entries[last].model == m; ++last) {
+            library.entries[last].model = 0;
+            record.entries.push_back(std::move(library.entries[last]));
         }
-        library.entries[e].model = 0;
-        record.entries.push_back(std::move(library.entries[e]));
+        for (const DescriptorTable& table : library.tables) {
+            const std::size_t length = descriptor_length(table.descriptor);
+            record.rows.emplace_back(
+                table.rows.begin() + static_cast<std::ptrdiff_t>(first * length),
+                table.rows.begin() + static_cast<std::ptrdiff_t>(last * length));
+            record.spreads.push_back(table.spread.part(first, last, length));
+        }
+        first = last;
     }
     return records;
 }

@@ -13,6 +13,7 @@ struct ModelRecord {
     Model model;
     std::vector<Entry> entries;            ///< Entry::model is 0
     std::vector<std::vector<float>> rows;  ///< for each of settings.descriptors: entries x length
+    std::vector<Spread> spreads;           ///< for each of settings.descriptors; may be empty
 };
 
 /// A library of these models, in the order of their names, without a codebook.

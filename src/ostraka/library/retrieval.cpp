@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -50,13 +51,13 @@ std::vector<float> comparable_rows(std::span<const float> rows, std::size_t leng
 // Median over entries of the distance to the nearest entry of another model (of any other entry if
 // there is one model only).
 float table_scale(const ModelLibrary& library, const std::vector<float>& rows, std::size_t length,
-                  Metric metric) {
+                  const std::function<std::vector<float>(std::span<const float>)>& distances) {
     const std::size_t count = library.entries.size();
     const std::size_t stride = 1 + count / kScaleSamples;
     std::vector<float> nearest;
     for (std::size_t i = 0; i < count; i += stride) {
         const auto row = std::span<const float>(rows).subspan(i * length, length);
-        const std::vector<float> all = distances_to_all(rows, row, metric);
+        const std::vector<float> all = distances(row);
         float best = std::numeric_limits<float>::max();
         for (std::size_t j = 0; j < count; ++j) {
             const bool same_model = library.entries[i].model == library.entries[j].model;
@@ -118,6 +119,7 @@ EntryIndex::EntryIndex(const ModelLibrary& library, std::optional<Metric> metric
     : library_(&library),
       metrics_(library.tables.size()),
       rows_(library.tables.size()),
+      spreads_(library.tables.size()),
       scales_(library.tables.size()),
       keypoints_(library) {
     parallel_for(library.tables.size(), [&](std::size_t t) {
@@ -125,13 +127,22 @@ EntryIndex::EntryIndex(const ModelLibrary& library, std::optional<Metric> metric
         const std::size_t length = descriptor_length(table.descriptor);
         metrics_[t] = metric.value_or(best_metric(table.descriptor));
         rows_[t] = comparable_rows(table.rows, length, metrics_[t]);
-        scales_[t] = table_scale(library, rows_[t], length, metrics_[t]);
+        if (!table.spread.empty() && metrics_[t] == best_metric(table.descriptor)) {
+            spreads_[t] = SpreadIndex(table.spread, length);
+        }
+        scales_[t] = table_scale(library, rows_[t], length,
+                                 [&](std::span<const float> row) { return to_all(t, row); });
     });
     bags_ = comparable_rows(library.bags, library.codebook.size(), Metric::hellinger);
 }
 
 std::vector<float> EntryIndex::distances(std::size_t table, std::span<const float> row) const {
-    return distances_to_all(rows_[table], comparable_row(row, metrics_[table]), metrics_[table]);
+    return to_all(table, comparable_row(row, metrics_[table]));
+}
+
+std::vector<float> EntryIndex::to_all(std::size_t table, std::span<const float> row) const {
+    if (!spreads_[table].empty()) return spreads_[table].distances(row);
+    return distances_to_all(rows_[table], row, metrics_[table]);
 }
 
 std::vector<float> EntryIndex::fused(std::span<const std::vector<float>> distances) const {

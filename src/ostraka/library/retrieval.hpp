@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the library entries nearest to a described piece, and lets them vote (method, 3.3).
 //
-// Entries vote by global descriptors. Distance: each descriptor's best metric (metric.hpp). Fused
+// Entries vote by global descriptors. Distance: each descriptor's best metric (metric.hpp), to the
+// patch of rows that an entry stands for (spread.hpp), or its own row where it has no spread. Fused
 // distance: the sum over descriptors, each divided by its own scale, the median distance between
 // an entry and the nearest entry of another model.
 // Models are ranked best by "fused", which adds what the keypoints say: local descriptors survive
@@ -55,9 +56,12 @@ class EntryIndex {
     std::vector<float> bag_distances(const PointCloud& cloud) const;
 
   private:
+    std::vector<float> to_all(std::size_t table, std::span<const float> comparable) const;
+
     const ModelLibrary* library_;
     std::vector<Metric> metrics_;           // per table
     std::vector<std::vector<float>> rows_;  // per table: entries x length, comparable_row()s
+    std::vector<SpreadIndex> spreads_;      // per table; empty where rows are compared
     std::vector<float> scales_;             // per table
     std::vector<float> bags_;               // entries x words, comparable_row()s
     KeypointIndex keypoints_;

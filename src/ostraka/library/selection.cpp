@@ -2,6 +2,7 @@
 #include "ostraka/library/selection.hpp"
 
 #include <algorithm>
+#include <array>
 #include <queue>
 
 #include "ostraka/base/parallel.hpp"
@@ -9,9 +10,13 @@
 namespace ostraka {
 namespace {
 
-// Sets in one block, with their sizes: overlaps of one with all others.
+constexpr std::array<std::string_view, 3> kNames = {"surface", "icp", "none"};
+
+// Sets in one block, with their sizes: overlaps of one, or its best image, with all others.
 class OverlapRow {
   public:
+    explicit OverlapRow(std::span<const ElementMap> images) : images_(images) {}
+
     void add(const ElementSet& set) {
         sets_.push_back(set);
         sizes_.push_back(count_elements(set));
@@ -19,18 +24,48 @@ class OverlapRow {
     std::size_t size() const { return sets_.size(); }
     /// Intersection over union of `set` with each, into `row` (replaced).
     void with(const ElementSet& set, std::vector<float>& row) const {
+        row.assign(sets_.size(), 0.0F);
+        raise(set, row);
+        for (const ElementMap& image : images_) raise(mapped(set, image), row);
+    }
+    /// The earliest one that `set` overlaps by at least `least`, and most of all; kNoIndex: none.
+    std::uint32_t most_alike(const ElementSet& set, double least) const {
+        std::uint32_t best = kNoIndex;
+        double most = 0.0;
+        seek(set, least, best, most);
+        for (const ElementMap& image : images_) seek(mapped(set, image), least, best, most);
+        return best;
+    }
+
+  private:
+    void raise(const ElementSet& set, std::vector<float>& row) const {
         thread_local std::vector<int> common;
         common.resize(sets_.size());
-        row.resize(sets_.size());
         count_common(set, sets_, common);
         const int size = count_elements(set);
         for (std::size_t i = 0; i < row.size(); ++i) {
             const int either = size + sizes_[i] - common[i];
-            row[i] = either > 0 ? static_cast<float>(common[i]) / static_cast<float>(either) : 0.0F;
+            if (either > 0) {
+                row[i] =
+                    std::max(row[i], static_cast<float>(common[i]) / static_cast<float>(either));
+            }
+        }
+    }
+    // Two sets overlap at most by the ratio of their sizes, which spares most of the counting.
+    void seek(const ElementSet& set, double least, std::uint32_t& best, double& most) const {
+        const int size = count_elements(set);
+        for (std::uint32_t i = 0; i < sets_.size(); ++i) {
+            const auto [smaller, larger] = std::minmax(size, sizes_[i]);
+            const double bound = std::max(least, most);
+            if (larger == 0 || static_cast<double>(smaller) < bound * larger) continue;
+            const double found = overlap(set, sets_[i]);
+            if (found < least || found < most || (found == most && i >= best)) continue;
+            best = i;
+            most = found;
         }
     }
 
-  private:
+    std::span<const ElementMap> images_;
     std::vector<ElementSet> sets_;
     std::vector<int> sizes_;
 };
@@ -41,15 +76,14 @@ struct Ground {
     std::vector<double> weights;
 };
 
-Ground drop_redundant(std::span<const ElementSet> candidates, double max_overlap) {
+Ground drop_redundant(std::span<const ElementSet> candidates, double max_overlap,
+                      std::span<const ElementMap> images) {
     Ground ground;
-    OverlapRow kept_sets;
-    std::vector<float> with_kept;
+    OverlapRow kept_sets(images);
     for (std::uint32_t i = 0; i < candidates.size(); ++i) {
-        kept_sets.with(candidates[i], with_kept);
-        const auto most = std::max_element(with_kept.begin(), with_kept.end());
-        if (most != with_kept.end() && double{*most} >= max_overlap) {
-            ground.weights[static_cast<std::size_t>(most - with_kept.begin())] += 1.0;
+        const std::uint32_t alike = kept_sets.most_alike(candidates[i], max_overlap);
+        if (alike != kNoIndex) {
+            ground.weights[alike] += 1.0;
             continue;
         }
         ground.candidates.push_back(i);
@@ -71,12 +105,34 @@ struct Bound {
 
 }  // namespace
 
+std::string_view redundancy_name(Redundancy redundancy) {
+    return kNames[static_cast<std::size_t>(redundancy)];
+}
+
+std::optional<Redundancy> parse_redundancy(std::string_view name) {
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+        if (kNames[i] == name) return static_cast<Redundancy>(i);
+    }
+    return std::nullopt;
+}
+
+std::vector<std::uint32_t> thin_out(std::size_t total, std::size_t count) {
+    if (count == 0 || count > total) count = total;
+    std::vector<std::uint32_t> indices(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        indices[i] = static_cast<std::uint32_t>(i * total / count);
+    }
+    return indices;
+}
+
 SelectionResult select_entries(std::span<const ElementSet> candidates,
-                               const SelectionSettings& settings) {
-    const Ground ground = drop_redundant(candidates, settings.max_overlap);
+                               const SelectionSettings& settings,
+                               std::span<const ElementMap> images) {
+    const Ground ground = drop_redundant(candidates, settings.max_overlap, images);
     const std::size_t count = ground.candidates.size();
     std::vector<float> covered(count, 0.0F);
-    OverlapRow all;
+    std::vector<std::uint32_t> coverer(count, kNoIndex);  // candidate that covers most
+    OverlapRow all(images);
     for (const std::uint32_t i : ground.candidates) all.add(candidates[i]);
     const auto gain_of = [&](std::uint32_t candidate, std::vector<float>& row) {
         all.with(candidates[candidate], row);
@@ -109,12 +165,15 @@ SelectionResult select_entries(std::span<const ElementSet> candidates,
             continue;
         }
         for (std::size_t o = 0; o < covered.size(); ++o) {
-            covered[o] = std::max(covered[o], row[o]);
+            if (row[o] <= covered[o] && coverer[o] != kNoIndex) continue;
+            covered[o] = row[o];
+            coverer[o] = top.candidate;
         }
         result.chosen.push_back(top.candidate);
     }
     std::sort(result.chosen.begin(), result.chosen.end());
     result.beyond_budget = count - result.chosen.size();
+    result.nearest.assign(candidates.size(), kNoIndex);
     const double all_candidates = std::max<double>(1.0, static_cast<double>(candidates.size()));
     for (std::size_t o = 0; o < count; ++o) {
         const double weight = ground.weights[o] / all_candidates;
@@ -122,6 +181,10 @@ SelectionResult select_entries(std::span<const ElementSet> candidates,
         for (std::size_t level = 0; level < kCoveredOverlaps.size(); ++level) {
             if (double{covered[o]} >= kCoveredOverlaps[level]) result.covered[level] += weight;
         }
+        if (coverer[o] == kNoIndex) continue;
+        const auto at = std::lower_bound(result.chosen.begin(), result.chosen.end(), coverer[o]);
+        result.nearest[ground.candidates[o]] =
+            static_cast<std::uint32_t>(at - result.chosen.begin());
     }
     return result;
 }

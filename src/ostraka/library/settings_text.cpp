@@ -69,6 +69,7 @@ void visit_numbers(Visitor& visit, Settings& s) {
     visit("full_views_only", s.full_views_only);
     visit("selection.budget", s.selection.budget);
     visit("selection.max_overlap", s.selection.max_overlap);
+    visit("selection.spread", s.selection.spread);
     visit("keypoint_spacing", s.keypoint_spacing);
     visit("keypoint_radius", s.keypoint_radius);
     visit("seed", s.seed);
@@ -90,6 +91,7 @@ SettingTexts to_text(const LibrarySettings& settings) {
     Writer writer;
     visit_numbers(writer, settings);
     writer.texts["unit"] = unit_name(settings.unit);
+    writer.texts["selection.redundancy"] = redundancy_name(settings.selection.redundancy);
     std::string fractions;
     for (const double fraction : settings.cuts.fractions) {
         fractions += fmt::format("{}{}", fractions.empty() ? "" : ",", fraction);
@@ -111,6 +113,9 @@ LibrarySettings settings_from_text(const SettingTexts& texts) {
     const std::optional<Unit> unit = parse_unit(reader.find("unit"));
     if (!unit) Reader::fail("unit", reader.find("unit"));
     settings.unit = *unit;
+    const auto redundancy = parse_redundancy(reader.find("selection.redundancy"));
+    if (!redundancy) Reader::fail("selection.redundancy", reader.find("selection.redundancy"));
+    settings.selection.redundancy = *redundancy;
     settings.cuts.fractions.clear();
     for (const std::string& text : split(reader.find("cuts.fractions"))) {
         double fraction = 0.0;

@@ -96,27 +96,71 @@ MeshShape unpack_shape(const std::vector<double>& numbers) {
     return shape;
 }
 
+// A pose as a 3 x 4 matrix, column by column.
+void append(const Pose& pose, std::vector<double>& numbers) {
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) numbers.push_back(pose(row, column));
+    }
+}
+
+Pose pose_at(const double* numbers) {
+    Pose pose = Pose::Identity();
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) pose.matrix()(row, column) = numbers[3 * column + row];
+    }
+    return pose;
+}
+
 Bytes pack(const PrincipalFrame& frame) {
     std::vector<double> numbers;
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 3; ++row) numbers.push_back(frame.T_cloud_frame(row, column));
-    }
+    append(frame.T_cloud_frame, numbers);
     for (int axis = 0; axis < 3; ++axis) numbers.push_back(frame.deviations[axis]);
     return to_bytes(numbers);
 }
 
 PrincipalFrame unpack_frame(const std::vector<double>& numbers, std::int64_t ambiguity) {
     PrincipalFrame frame;
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 3; ++row) {
-            frame.T_cloud_frame.matrix()(row, column) =
-                numbers[static_cast<std::size_t>(3 * column + row)];
-        }
-    }
+    frame.T_cloud_frame = pose_at(numbers.data());
     frame.deviations = Vec3d(numbers.data() + 12);
     frame.ambiguous_sign = (ambiguity & 1) != 0;
     frame.ambiguous_order = (ambiguity & 2) != 0;
     return frame;
+}
+
+// The center; the number of turns, and each as a 3 x 4 matrix, column by column; then direction and
+// point of each axis.
+Bytes pack(const Symmetry& symmetry) {
+    std::vector<double> numbers(symmetry.center.data(), symmetry.center.data() + 3);
+    numbers.push_back(static_cast<double>(symmetry.turns.size()));
+    for (const Pose& turn : symmetry.turns) append(turn, numbers);
+    for (const ContinuousAxis& axis : symmetry.axes) {
+        numbers.insert(numbers.end(), axis.direction.data(), axis.direction.data() + 3);
+        numbers.insert(numbers.end(), axis.point.data(), axis.point.data() + 3);
+    }
+    return to_bytes(numbers);
+}
+
+Symmetry unpack_symmetry(const std::vector<double>& numbers) {
+    constexpr std::size_t kHead = 4;
+    constexpr std::size_t kTurn = 12;
+    constexpr std::size_t kAxis = 6;
+    const double turns = numbers.size() < kHead ? -1.0 : numbers[3];
+    const double most = static_cast<double>(numbers.size()) / kTurn;
+    if (!(turns >= 0.0 && turns <= most)) throw InvalidInput("the symmetry is damaged");
+    const auto turn_count = static_cast<std::size_t>(turns);
+    const std::size_t axes_from = kHead + kTurn * turn_count;
+    if (axes_from > numbers.size() || (numbers.size() - axes_from) % kAxis != 0) {
+        throw InvalidInput("the symmetry is damaged");
+    }
+    Symmetry symmetry;
+    symmetry.center = Vec3d(numbers.data());
+    for (std::size_t t = 0; t < turn_count; ++t) {
+        symmetry.turns.push_back(pose_at(numbers.data() + kHead + kTurn * t));
+    }
+    for (std::size_t i = axes_from; i < numbers.size(); i += kAxis) {
+        symmetry.axes.push_back({Vec3d(numbers.data() + i), Vec3d(numbers.data() + i + 3)});
+    }
+    return symmetry;
 }
 
 Row model_row(const Model& model) {
@@ -138,7 +182,7 @@ Row model_row(const Model& model) {
             to_bytes(counts),
             c.coverage,
             to_bytes(std::span<const double>(c.covered)),
-            to_bytes(std::vector<double>())};
+            pack(model.symmetry)};
 }
 
 TriangleMesh unpack_mesh(const Row& row) {
@@ -182,6 +226,7 @@ Model unpack_model(const Row& row) {
     model.counts = {c[0], c[1], c[2], c[3], c[4], c[5], as<double>(row, 11), {}};
     const auto covered = exactly<double>(row, 12, model.counts.covered.size());
     std::copy(covered.begin(), covered.end(), model.counts.covered.begin());
+    model.symmetry = unpack_symmetry(values<double>(row, 13));
     return model;
 }
 
@@ -211,6 +256,16 @@ Entry unpack_entry(const Row& row, const MeshShape& shape) {
     }
     if (entry.cloud.empty()) throw InvalidInput("an entry has no points");
     return entry;
+}
+
+Spread unpack_spread(const Row& row, std::size_t entries, std::size_t length) {
+    Spread spread;
+    spread.means = values<float>(row, 2);
+    if (!spread.empty()) spread.means = exactly<float>(row, 2, entries * length);
+    const std::size_t patches = spread.empty() ? 0 : entries * kSpreadDirections;
+    spread.directions = exactly<std::int8_t>(row, 3, patches * length);
+    spread.scales = exactly<float>(row, 4, patches);
+    return spread;
 }
 
 void add_bytes(Sha256& digest, const void* data, std::size_t size) {
@@ -247,8 +302,10 @@ StoredRecord to_stored(const ModelRecord& record, const LibrarySettings& setting
         stored.entries.push_back(entry_row(entry, record.model.shape));
     }
     for (std::size_t t = 0; t < settings.descriptors.size(); ++t) {
-        stored.descriptors.push_back(
-            {std::string(descriptor_name(settings.descriptors[t])), to_bytes(record.rows[t])});
+        const Spread& spread = record.spreads[t];
+        stored.descriptors.push_back({std::string(descriptor_name(settings.descriptors[t])),
+                                      to_bytes(record.rows[t]), to_bytes(spread.means),
+                                      to_bytes(spread.directions), to_bytes(spread.scales)});
     }
     std::sort(stored.descriptors.begin(), stored.descriptors.end());
     return stored;
@@ -271,8 +328,9 @@ ModelRecord from_stored(const StoredRecord& stored, const LibrarySettings& setti
         if (found == stored.descriptors.end()) {
             throw InvalidInput(fmt::format("no rows of {}", descriptor_name(descriptor)));
         }
-        record.rows.push_back(
-            exactly<float>(*found, 1, record.entries.size() * descriptor_length(descriptor)));
+        const std::size_t length = descriptor_length(descriptor);
+        record.rows.push_back(exactly<float>(*found, 1, record.entries.size() * length));
+        record.spreads.push_back(unpack_spread(*found, record.entries.size(), length));
     }
     return record;
 }

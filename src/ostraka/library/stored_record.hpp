@@ -20,11 +20,12 @@ using Row = std::vector<Cell>;
 struct StoredRecord {
     Row model;                     ///< name, file, source_sha256, ...
     std::vector<Row> entries;      ///< in the order of their numbers
-    std::vector<Row> descriptors;  ///< name and rows, in the order of the names
+    std::vector<Row> descriptors;  ///< name, rows, ... in the order of the names
 };
 
 inline constexpr std::size_t kModelColumns = 14;
 inline constexpr std::size_t kEntryColumns = 7;
+inline constexpr std::size_t kDescriptorColumns = 5;
 
 const std::string& name_of(const StoredRecord& record);
 

@@ -55,6 +55,29 @@ std::vector<std::uint32_t> SurfaceElements::label(const PointCloud& cloud) const
     return labels;
 }
 
+ElementMap SurfaceElements::map(const Pose& T_surface_surface) const {
+    const Mat3f R = T_surface_surface.linear().cast<float>();
+    PointCloud moved;
+    for (std::size_t i = 0; i < centers_.size(); ++i) {
+        moved.points.push_back((T_surface_surface * centers_[i].cast<double>()).cast<float>());
+        moved.normals.push_back(R * normals_[i]);
+    }
+    return label(moved);
+}
+
+ElementSet mapped(const ElementSet& set, const ElementMap& map) {
+    ElementSet result{};
+    for (std::size_t word = 0; word < set.size(); ++word) {
+        for (std::uint64_t bits = set[word]; bits != 0; bits &= bits - 1) {
+            const std::size_t element =
+                64 * word + static_cast<std::size_t>(std::countr_zero(bits));
+            const std::uint32_t to = element < map.size() ? map[element] : kNoIndex;
+            if (to != kNoIndex) result[to / 64] |= std::uint64_t{1} << (to % 64);
+        }
+    }
+    return result;
+}
+
 ElementSet element_set(std::span<const std::uint32_t> labels,
                        std::span<const std::uint32_t> indices) {
     ElementSet set{};

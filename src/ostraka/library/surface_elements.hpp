@@ -17,6 +17,12 @@ namespace ostraka {
 inline constexpr std::size_t kSurfaceElements = 1024;
 using ElementSet = std::array<std::uint64_t, kSurfaceElements / 64>;
 
+/// Where a turn takes each element: the number of the element there, or kNoIndex.
+using ElementMap = std::vector<std::uint32_t>;
+
+/// The elements that those of a set are taken to.
+ElementSet mapped(const ElementSet& set, const ElementMap& map);
+
 /// Intersection over union of two sets, 0 to 1; 0 if both are empty.
 double overlap(const ElementSet& a, const ElementSet& b);
 
@@ -39,6 +45,9 @@ class SurfaceElements {
     /// a thin wall differ. kNoIndex where no near one does.
     /// @param cloud  points with normals in the surface's frame.
     std::vector<std::uint32_t> label(const PointCloud& cloud) const;
+
+    /// @param T_surface_surface  a symmetry of the surface, in its frame.
+    ElementMap map(const Pose& T_surface_surface) const;
 
   private:
     std::vector<Vec3f> centers_;

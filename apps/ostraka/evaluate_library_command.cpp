@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which entries a library needs: protocol S for libraries of the same models made in different
+// ways.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "ostraka/base/stopwatch.hpp"
+#include "ostraka/cloud/resample.hpp"
+#include "ostraka/evaluation/segments.hpp"
+#include "ostraka/library/build.hpp"
+#include "ostraka/library/library_file.hpp"
+
+namespace ostraka::app {
+namespace {
+
+struct LibraryOptions {
+    CommonOptions common;
+    std::vector<std::string> models;
+    std::string unit;
+    std::string budgets = "16,32,48,64,128";
+    double noise = 0.0;
+    bool without_icp = false;
+    LibrarySettings settings;
+    SegmentSettings segments;
+};
+
+// One way to make a library.
+struct Variant {
+    std::string name;
+    LibrarySettings settings;
+};
+
+std::vector<Variant> variants_of(const LibraryOptions& options) {
+    std::vector<Variant> variants;
+    const auto add = [&](std::string name, Redundancy redundancy, int budget, bool spread) {
+        Variant variant{std::move(name), options.settings};
+        variant.settings.selection.redundancy = redundancy;
+        variant.settings.selection.budget = budget;
+        variant.settings.selection.spread = spread;
+        variants.push_back(std::move(variant));
+    };
+    add("full views", Redundancy::none, 0, false);
+    variants.back().settings.full_views_only = true;
+    add("all candidates", Redundancy::none, 0, false);
+    if (!options.without_icp) add("ICP", Redundancy::icp, 0, false);
+    for (const double value : parse_numbers(options.budgets, "--budgets")) {
+        const int budget = static_cast<int>(value);
+        if (!options.without_icp) {
+            add(fmt::format("ICP, {}", budget), Redundancy::icp, budget, false);
+        }
+        add(fmt::format("surface, {}, no spread", budget), Redundancy::surface, budget, false);
+        add(fmt::format("surface, {}", budget), Redundancy::surface, budget, true);
+    }
+    return variants;
+}
+
+std::uintmax_t file_size_of(const ModelLibrary& library) {
+    const std::filesystem::path path = std::filesystem::temp_directory_path() /
+                                       fmt::format("ostraka_evaluate_{}.ostraka", ::getpid());
+    save_library(library, path);
+    const std::uintmax_t size = std::filesystem::file_size(path);
+    std::filesystem::remove(path);
+    return size;
+}
+
+std::vector<LabeledSegment> segments_of(const std::vector<ModelSource>& models,
+                                        const LibraryOptions& options) {
+    SceneModels scene_models;
+    std::vector<const ModelSource*> by_name;
+    for (const ModelSource& model : models) by_name.push_back(&model);
+    std::sort(by_name.begin(), by_name.end(),
+              [](const auto* a, const auto* b) { return a->name < b->name; });
+    for (const ModelSource* model : by_name) {
+        scene_models.meshes.push_back(model->mesh);
+        scene_models.shapes.push_back(measure(model->mesh));
+    }
+    SegmentSettings settings = options.segments;
+    settings.views.sensor = {.noise = options.noise * options.settings.sampling,
+                             .seed = settings.views.seed};
+    return simulate_segments(scene_models, settings, progress_bar());
+}
+
+void run_library(LibraryOptions& options) {
+    catch_interrupts();
+    std::vector<ModelSource> models;
+    for (const std::string& path : options.models) models.push_back(load_model(path));
+    options.settings.unit = require_unit(options.unit, "");
+    if (options.settings.sampling == 0.0) {
+        std::vector<ModelInput> inputs;
+        for (const ModelSource& model : models) inputs.push_back(model_input(model));
+        options.settings.sampling = default_sampling(inputs);
+    }
+    const std::vector<LabeledSegment> segments = segments_of(models, options);
+    std::vector<std::string> columns = {"vfh", "esf", "gasd", "shot", "rops", "keypoints", "fused"};
+    std::vector<std::vector<std::string>> rows = {{"library", "entries", "MB", "build s"}};
+    rows.front().insert(rows.front().end(), columns.begin(), columns.end());
+    Json results = Json::array();
+    for (const Variant& variant : variants_of(options)) {
+        say(variant.name);
+        const Stopwatch watch;
+        const ModelLibrary library = build_library(models, variant.settings, progress_bar());
+        const double seconds = watch.seconds();
+        const std::uintmax_t bytes = file_size_of(library);
+        const auto rates = recognition_rates(EntryIndex(library), segments, 1);
+        rows.push_back({variant.name, std::to_string(library.entries.size()),
+                        fmt::format("{:.1f}", static_cast<double>(bytes) / 1e6),
+                        fmt::format("{:.1f}", seconds)});
+        for (const std::string& column : columns) {
+            const auto it = rates.find(column);
+            rows.back().push_back(it == rates.end() ? "-" : fmt::format("{:.3f}", it->second));
+        }
+        results.push_back({{"library", variant.name},
+                           {"entries", library.entries.size()},
+                           {"bytes", bytes},
+                           {"build_seconds", seconds},
+                           {"recognition_rate", rates}});
+    }
+    say(fmt::format("{} segments", segments.size()));
+    say_table(rows);
+    write_json({{"protocol", "library"}, {"segments", segments.size()}, {"results", results}},
+               options.common.json);
+}
+
+}  // namespace
+
+void add_evaluate_library(CLI::App& parent) {
+    auto options = std::make_shared<LibraryOptions>();
+    CLI::App* command = parent.add_subcommand(
+        "library",
+        "protocol S for libraries of the same models made in different ways: whole views, all "
+        "candidates, the study's ICP, ours at several budgets");
+    command->add_option("models", options->models, "mesh files")->required();
+    add_unit(*command, options->unit, "unit of the numbers in the model files");
+    command->add_option("--budgets", options->budgets, "entries a model, comma-separated")
+        ->capture_default_str();
+    command->add_option("--views", options->settings.views.count, "viewpoints around each model")
+        ->capture_default_str();
+    command->add_option("--directions", options->settings.cuts.directions, "cut directions")
+        ->capture_default_str();
+    command->add_flag("--without-icp", options->without_icp,
+                      "leave out the study's way, which is slow");
+    command->add_option("--scenes", options->segments.scenes, "random-view scenes")
+        ->capture_default_str();
+    command
+        ->add_option("--noise", options->noise,
+                     "standard deviation of the depth noise, in sampling distances")
+        ->capture_default_str();
+    command->add_option("--seed", options->segments.views.seed, "seed of the scenes")
+        ->capture_default_str();
+    add_common(*command, options->common);
+    command->callback([options] { run_library(*options); });
+}
+
+}  // namespace ostraka::app

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the observations that an entry stands for vary: the mean of their descriptor rows and the
+// directions in which they differ most. A row is compared with the patch that these span, not with
+// one point of it, so that a few dozen entries serve like the hundreds that they were chosen from.
+// After: Simard, LeCun, Denker. Efficient Pattern Recognition Using a New Transformation Distance
+// (tangent distance). NIPS 1993; Vincent, Bengio. K-Local Hyperplane and Convex Distance Nearest
+// Neighbor Algorithms. NIPS 2001. Departs from both: directions are principal ones of the
+// candidates that an entry covers, and the patch ends where they end.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ostraka/descriptors/metric.hpp"
+
+namespace ostraka {
+
+/// Directions kept for each entry.
+inline constexpr std::size_t kSpreadDirections = 5;
+
+/// The spreads of one descriptor, of all entries in their order. In the space of comparable_row()
+/// with the descriptor's best_metric().
+struct Spread {
+    std::vector<float> means;             ///< entries x length
+    std::vector<std::int8_t> directions;  ///< entries x kSpreadDirections x length, orthogonal
+    std::vector<float> scales;            ///< entries x kSpreadDirections: a direction times its
+                                          ///< scale reaches from the mean to the patch's edge
+    bool empty() const { return means.empty(); }
+    void append(const Spread& other);
+    /// Of the entries [first, last). @param length  of a row.
+    Spread part(std::size_t first, std::size_t last, std::size_t length) const;
+};
+
+/// Appends the spread of one entry.
+/// @param rows    comparable rows of what it stands for, itself included, one after another.
+/// @param length  of a row.
+void append_spread(std::span<const float> rows, std::size_t length, Spread& spread);
+
+/// Spreads made ready to be searched.
+class SpreadIndex {
+  public:
+    SpreadIndex() = default;
+    SpreadIndex(const Spread& spread, std::size_t length);
+    bool empty() const { return length_ == 0; }
+    /// L2 distance from a comparable row to the nearest point of each entry's patch.
+    std::vector<float> distances(std::span<const float> row) const;
+
+  private:
+    std::size_t length_ = 0;
+    std::vector<float> vectors_;  // entries x (mean, directions) x length
+    std::vector<float> squares_;  // entries x: |mean|^2, then |direction|^2 of each
+    std::vector<float> offsets_;  // entries x directions: mean . direction
+};
+
+}  // namespace ostraka
