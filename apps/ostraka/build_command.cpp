@@ -118,15 +118,6 @@ std::string size_hint(const std::vector<ModelInput>& models) {
     return fmt::format("the models measure {:.4g} to {:.4g} units across", least, most);
 }
 
-// Share of likely observations that an entry overlaps by at least so much.
-Json coverage_json(const BuildCounts& counts) {
-    Json shares = Json::object();
-    for (std::size_t i = 0; i < kCoveredOverlaps.size(); ++i) {
-        shares[fmt::format("{:.1f}", kCoveredOverlaps[i])] = counts.covered[i];
-    }
-    return shares;
-}
-
 std::size_t count_entries(const BuildOutcome& built) {
     std::size_t entries = 0;
     for (const ModelSummary& model : built.models) {

@@ -11,6 +11,7 @@ void add_recognize(CLI::App& app);
 void add_classify(CLI::App& app);
 void add_describe(CLI::App& app);
 void add_edit(CLI::App& app);
+void add_export(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_symmetry(CLI::App& app);

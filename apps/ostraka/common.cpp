@@ -131,6 +131,14 @@ void write_json(const Json& json, const std::string& path) {
     }
 }
 
+Json coverage_json(const BuildCounts& counts) {
+    Json shares = Json::object();
+    for (std::size_t i = 0; i < kCoveredOverlaps.size(); ++i) {
+        shares[fmt::format("{:.1f}", kCoveredOverlaps[i])] = counts.covered[i];
+    }
+    return shares;
+}
+
 Json pose_json(const Pose& pose, double translation_factor) {
     Json numbers = Json::array();
     for (int row = 0; row < 3; ++row) {

@@ -12,6 +12,7 @@
 #include "ostraka/base/progress.hpp"
 #include "ostraka/base/types.hpp"
 #include "ostraka/base/unit.hpp"
+#include "ostraka/library/model_library.hpp"
 
 namespace ostraka::app {
 
@@ -49,6 +50,8 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& op
 
 /// Prints to standard output for "-", else writes the file; nothing for an empty path.
 void write_json(const Json& json, const std::string& path);
+/// Share of likely observations that some entry overlaps by at least 0.5, 0.6, ... .
+Json coverage_json(const BuildCounts& counts);
 Json pose_json(const Pose& pose, double translation_factor = 1.0);
 
 /// A bar on standard error if it is a terminal, else a line a stage; stops the work on Ctrl-C.

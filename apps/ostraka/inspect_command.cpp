@@ -8,6 +8,7 @@
 #include "ostraka/io/png_file.hpp"
 #include "ostraka/library/library_file.hpp"
 #include "ostraka/library/settings_text.hpp"
+#include "ostraka/mesh/symmetry_poses.hpp"
 #include "ostraka/recognition/contact_sheet.hpp"
 
 namespace ostraka::app {
@@ -29,7 +30,9 @@ Json inspect_json(const ModelLibrary& library, const std::string& path) {
                           {"triangles", model.mesh.triangles.size()},
                           {"entries", model.counts.kept},
                           {"keypoints", model.keypoints.size()},
-                          {"coverage", model.counts.coverage}});
+                          {"symmetry", symmetry_name(model.symmetry)},
+                          {"coverage", model.counts.coverage},
+                          {"covered", coverage_json(model.counts)}});
     }
     Json settings = Json::object();
     for (const auto& [key, value] : to_text(library.settings)) settings[key] = value;
@@ -44,8 +47,9 @@ Json inspect_json(const ModelLibrary& library, const std::string& path) {
 
 void run_inspect(const InspectOptions& options) {
     const ModelLibrary library = load_library(options.library);
-    std::vector<std::vector<std::string>> rows = {
-        {"model", "diameter", "triangles", "entries", "whole views", "keypoints", "file"}};
+    std::vector<std::vector<std::string>> rows = {{"model", "diameter", "triangles", "symmetry",
+                                                   "entries", "whole views", "coverage",
+                                                   "keypoints", "file"}};
     for (std::uint32_t m = 0; m < library.models.size(); ++m) {
         const Model& model = library.models[m];
         const auto whole = std::count_if(
@@ -54,8 +58,10 @@ void run_inspect(const InspectOptions& options) {
         rows.push_back(
             {model.name,
              fmt::format("{:.4g} {}", model.shape.diameter, unit_name(library.settings.unit)),
-             std::to_string(model.mesh.triangles.size()), std::to_string(model.counts.kept),
-             std::to_string(whole), std::to_string(model.keypoints.size()), model.file});
+             std::to_string(model.mesh.triangles.size()), symmetry_name(model.symmetry),
+             std::to_string(model.counts.kept), std::to_string(whole),
+             fmt::format("{:.3f}", model.counts.coverage), std::to_string(model.keypoints.size()),
+             model.file});
     }
     say_table(rows);
     std::string names;

@@ -44,6 +44,7 @@ int run(int argc, char** argv) {
     app::add_edit(app);
     app::add_inspect(app);
     app::add_verify(app);
+    app::add_export(app);
     app::add_symmetry(app);
     app::add_views(app);
     app::add_parts(app);

@@ -9,6 +9,7 @@
 #include "ostraka/io/cloud_file.hpp"
 #include "ostraka/io/png_file.hpp"
 #include "ostraka/library/library_file.hpp"
+#include "ostraka/mesh/symmetry_poses.hpp"
 #include "ostraka/recognition/picture.hpp"
 #include "ostraka/recognition/recognize.hpp"
 
@@ -26,12 +27,28 @@ struct RecognizeOptions {
     RecognitionSettings settings;
 };
 
-Json recognition_json(const Recognition& result, const std::string& scene, Unit unit,
-                      double factor) {
+constexpr int kAxisSteps = 12;  // equivalent poses listed for each continuous axis
+
+// Every pose that shows the same surface, the reported one first; one if there is no symmetry.
+Json equivalents_json(const ModelLibrary& library, const RecognizedObject& object, double factor) {
+    Json poses = Json::array();
+    for (const Model& model : library.models) {
+        if (model.name != object.model) continue;
+        for (const Pose& pose :
+             equivalent_poses(model.symmetry, object.T_scene_model, kAxisSteps)) {
+            poses.push_back(pose_json(pose, factor));
+        }
+    }
+    return poses;
+}
+
+Json recognition_json(const ModelLibrary& library, const Recognition& result,
+                      const std::string& scene, Unit unit, double factor) {
     Json objects = Json::array();
     for (const RecognizedObject& object : result.objects) {
         objects.push_back({{"model", object.model},
                            {"T_scene_model", pose_json(object.T_scene_model, factor)},
+                           {"equivalent_poses", equivalents_json(library, object, factor)},
                            {"confidence", object.confidence},
                            {"visible_fraction", object.visible_fraction},
                            {"inlier_rms", object.inlier_rms * factor},
@@ -82,7 +99,7 @@ void run_recognize(const RecognizeOptions& options) {
         write_png(options.picture, draw_recognition(scene, library, result));
         say("picture: " + options.picture);
     }
-    write_json(recognition_json(result, options.scene, unit, factor), options.common.json);
+    write_json(recognition_json(library, result, options.scene, unit, factor), options.common.json);
 }
 
 }  // namespace

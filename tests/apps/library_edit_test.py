@@ -123,6 +123,30 @@ class LibraryEdit(unittest.TestCase):
         for a, b in zip(*sizes):
             self.assertAlmostEqual(a, b, delta=1e-4 * b)
 
+    def test_export_writes_what_other_programs_read(self):
+        folder = self.path("exported")
+        self.succeed("export", self.whole, "-o", folder, "--entries")
+        with open(os.path.join(folder, "models", "models_info.json")) as file:
+            infos = json.load(file)
+        self.assertEqual(sorted(infos), ["1", "2", "3"])
+        self.assertTrue(os.path.exists(os.path.join(folder, "models", "obj_000003.ply")))
+        self.assertEqual(len([f for f in os.listdir(os.path.join(folder, "entries", "tee"))
+                              if f.endswith(".ply")]), 12)
+        with open(os.path.join(folder, "entries", "tee", "vfh.csv")) as file:
+            rows = [line.split(",") for line in file]
+        self.assertEqual([len(row) for row in rows], [308] * 12)
+
+    def test_a_dump_is_equal_for_equal_content(self):
+        edited = self.path("dumped.ostraka")
+        shutil.copy(self.whole, edited)
+        self.succeed("rename", edited, "cam", "zeta")
+        self.succeed("rename", edited, "zeta", "cam")
+        self.assertNotEqual(content(edited), content(self.whole))
+        dumps = [run("export", path, "--dump", "-").stdout for path in (edited, self.whole)]
+        self.assertGreater(len(dumps[0]), 100_000)
+        self.assertEqual(*dumps)
+        self.assertEqual(run("export", edited).returncode, 2)
+
     def test_wrong_shards_are_refused(self):
         for shard in ("0/2", "3/2", "1", "a/b", "1/2/3"):
             result = run("build", *self.models, "-o", self.path("x.ostraka"), *QUICK, "--shard", shard)

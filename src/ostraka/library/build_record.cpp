@@ -63,16 +63,19 @@ std::vector<std::vector<float>> describe_all(const PointCloud& cloud,
     return rows;
 }
 
-void describe_entries(ModelRecord& record, const Choice& choice, const LibrarySettings& settings) {
+void describe_entries(ModelRecord& record, const Choice& choice, std::span<const ModelView> views,
+                      const LibrarySettings& settings) {
     const std::vector<Companion>& companions = choice.companions;
     const std::size_t entries = record.entries.size();
     const LibrarySettings coarse = for_companions(settings);
     std::vector<std::vector<std::vector<float>>> described(entries + companions.size());
     parallel_for(described.size(), [&](std::size_t i) {
-        described[i] = i < entries
-                           ? describe_all(record.entries[i].cloud, choice.triangles[i], settings)
-                           : describe_all(companions[i - entries].cloud,
-                                          companions[i - entries].triangles, coarse);
+        if (i < entries) {
+            described[i] = describe_all(record.entries[i].cloud, choice.triangles[i], settings);
+        } else {
+            const Piece piece = piece_of(companions[i - entries], views, choice);
+            described[i] = describe_all(piece.cloud, piece.triangles, coarse);
+        }
     });
     std::vector<std::vector<std::size_t>> members(entries);  // of each entry: itself, companions
     for (std::size_t i = 0; i < described.size(); ++i) {
@@ -133,7 +136,7 @@ ModelRecord look_at(const ModelSource& source, const LibrarySettings& settings,
     built.entries = std::move(choice.entries);
     model.keypoints = describe_keypoints(model.surface, views, settings);
     to_model_frame(built, T_model_canonical);
-    describe_entries(built, choice, settings);
+    describe_entries(built, choice, views, settings);
     return built;
 }
 

@@ -157,21 +157,14 @@ std::vector<PieceTriangles> triangulate_views(std::span<const ModelView> views,
 }
 
 // The chosen candidates excepted: they are entries.
-std::vector<Companion> companions(const Pool& pool, const SelectionResult& selected,
-                                  std::span<const ModelView> views,
-                                  std::span<const PieceTriangles> triangles) {
-    std::vector<std::uint32_t> numbers;
+std::vector<Companion> companions(Pool& pool, const SelectionResult& selected) {
+    std::vector<Companion> result;
     for (std::uint32_t i = 0; i < selected.nearest.size(); ++i) {
         const std::uint32_t entry = selected.nearest[i];
-        if (entry != kNoIndex && selected.chosen[entry] != i) numbers.push_back(i);
+        if (entry == kNoIndex || selected.chosen[entry] == i) continue;
+        Candidate& candidate = pool.candidates[i];
+        result.push_back({entry, candidate.view, std::move(candidate.indices)});
     }
-    std::vector<Companion> result(numbers.size());
-    parallel_for(result.size(), [&](std::size_t c) {
-        const Candidate& candidate = pool.candidates[numbers[c]];
-        const PointCloud& view = views[candidate.view].cloud;
-        result[c] = {selected.nearest[numbers[c]], select(view, candidate.indices),
-                     triangles_within(triangles[candidate.view], view.size(), candidate.indices)};
-    });
     return result;
 }
 
@@ -186,7 +179,7 @@ Choice choose_entries(std::span<const ModelView> views, const PointCloud& surfac
         if (views[v].cloud.size() < 3) return;  // an edge-on plate may show next to nothing
         of_view[v] = candidates_of(views[v], v, elements, settings);
     });
-    const Pool pool = gather(of_view, counts);
+    Pool pool = gather(of_view, counts);
     const SelectionResult selected = select(pool, views, elements, symmetry, settings);
     counts.views = static_cast<int>(views.size());
     counts.redundant = static_cast<int>(selected.redundant);
@@ -194,18 +187,23 @@ Choice choose_entries(std::span<const ModelView> views, const PointCloud& surfac
     counts.kept = static_cast<int>(selected.chosen.size());
     counts.coverage = selected.coverage;
     counts.covered = selected.covered;
-    const std::vector<PieceTriangles> triangles = triangulate_views(views, settings);
     Choice choice;
+    choice.view_triangles = triangulate_views(views, settings);
     for (const std::uint32_t i : selected.chosen) {
         const Candidate& candidate = pool.candidates[i];
         choice.entries.push_back(make_entry(candidate, views[candidate.view]));
-        choice.triangles.push_back(triangles_within(
-            triangles[candidate.view], views[candidate.view].cloud.size(), candidate.indices));
+        choice.triangles.push_back(triangles_within(choice.view_triangles[candidate.view],
+                                                    views[candidate.view].cloud.size(),
+                                                    candidate.indices));
     }
-    if (settings.selection.spread) {
-        choice.companions = companions(pool, selected, views, triangles);
-    }
+    if (settings.selection.spread) choice.companions = companions(pool, selected);
     return choice;
+}
+
+Piece piece_of(const Companion& companion, std::span<const ModelView> views, const Choice& choice) {
+    const PointCloud& view = views[companion.view].cloud;
+    return {select(view, companion.indices), triangles_within(choice.view_triangles[companion.view],
+                                                              view.size(), companion.indices)};
 }
 
 }  // namespace ostraka

@@ -15,20 +15,31 @@ namespace ostraka {
 /// piece it would take most of the time of a build.
 using PieceTriangles = std::vector<IndexTriangle>;
 
+/// A piece of a view.
+struct Piece {
+    PointCloud cloud;  ///< with normals
+    PieceTriangles triangles;
+};
+
 /// A candidate that was not chosen, and the entry that shows most of what it shows.
 struct Companion {
-    std::uint32_t entry = 0;  ///< index into Choice::entries
-    PointCloud cloud;         ///< with normals
-    PieceTriangles triangles;
+    std::uint32_t entry = 0;             ///< index into Choice::entries
+    std::size_t view = 0;                ///< index into the views
+    std::vector<std::uint32_t> indices;  ///< of its points in the view
 };
 
 struct Choice {
     std::vector<Entry> entries;
-    std::vector<PieceTriangles>
-        triangles;  ///< of each entry; empty ones if no descriptor needs any
-    std::vector<Companion>
-        companions;  ///< without redundant ones; none where no spread is asked for
+    std::vector<PieceTriangles> triangles;       ///< of each entry
+    std::vector<Companion> companions;           ///< without redundant ones; none where no spread
+                                                 ///< is asked for
+    std::vector<PieceTriangles> view_triangles;  ///< of each view; empty ones if no descriptor
+                                                 ///< needs any
 };
+
+/// The points and triangles of a companion: made when they are needed, as all together would take
+/// hundreds of megabytes.
+Piece piece_of(const Companion& companion, std::span<const ModelView> views, const Choice& choice);
 
 /// @param views    of the model; clouds with normals, in the frame that it is looked at in.
 /// @param surface  merge_surface() of them, in the same frame.
