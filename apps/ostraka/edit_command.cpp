@@ -74,6 +74,15 @@ void run_rename(const EditOptions& options) {
     tell(options, watch);
 }
 
+void run_index(const EditOptions& options) {
+    const Stopwatch watch;
+    edit(options, [&](const std::filesystem::path& library) {
+        const std::size_t rows = index_keypoints(library);
+        say(fmt::format("graph of {} keypoint rows", rows));
+    });
+    tell(options, watch);
+}
+
 void run_merge(const EditOptions& options) {
     catch_interrupts();
     const Stopwatch watch;
@@ -117,6 +126,16 @@ void add_edit(CLI::App& app) {
     add_output(*command, *rename);
     add_common(*command, rename->common);
     command->callback([rename] { run_rename(*rename); });
+
+    auto index = std::make_shared<EditOptions>();
+    command = app.add_subcommand(
+        "index",
+        "add a graph for fast, approximate matching of keypoints: for libraries of dozens "
+        "to thousands of models; to be repeated after models have changed");
+    command->add_option("library", index->library, "library made by `ostraka build`")->required();
+    add_output(*command, *index);
+    add_common(*command, index->common);
+    command->callback([index] { run_index(*index); });
 
     auto merge = std::make_shared<EditOptions>();
     command = app.add_subcommand(

@@ -11,6 +11,7 @@
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/base/parallel.hpp"
+#include "ostraka/io/file_lock.hpp"
 #include "ostraka/library/bags.hpp"
 #include "ostraka/library/build.hpp"
 #include "ostraka/library/build_file.hpp"
@@ -160,6 +161,32 @@ TEST_F(Edit, AnUnfinishedBuildIsContinuedAndThenGone) {
     EXPECT_FALSE(fs::exists(unfinished_build(target)));
     save_library(build_library(models_, settings_), folder_ / "in_memory");
     EXPECT_EQ(bytes_of(target), bytes_of(folder_ / "in_memory"));
+}
+
+// The other may have only made its file: an empty one is no reason to begin anew.
+TEST_F(Edit, AnotherProcessesUnfinishedBuildIsLeftAlone) {
+    const fs::path target = folder_ / "a";
+    const FileLock other(unfinished_build(target));
+    EXPECT_THROW(build_library_file(inputs({0}), settings_, target), FileError);
+    EXPECT_TRUE(fs::exists(unfinished_build(target)));
+    EXPECT_FALSE(fs::exists(target));
+}
+
+TEST_F(Edit, AKeypointGraphIsStoredAndVoidAfterAChange) {
+    const fs::path both = build("both", {0, 1});
+    const std::string before = verify_library(both).sha256;
+    const std::size_t rows = index_keypoints(both);
+    const ModelLibrary library = load_library(both);
+    EXPECT_EQ(all_keypoint_rows(library).size(), rows * kShotLength);
+    EXPECT_EQ(library.keypoint_graph.links.size(), rows * library.keypoint_graph.degree);
+    EXPECT_TRUE(verify_library(both).problems.empty());
+    EXPECT_EQ(verify_library(both).sha256,
+              before);  // it is derived from the content, not part of it
+    rename_model(both, name(0), "zzz");
+    EXPECT_TRUE(load_library(both).keypoint_graph.links.empty());
+    EXPECT_TRUE(verify_library(both).problems.empty());
+    rename_model(both, "zzz", name(0));
+    EXPECT_FALSE(load_library(both).keypoint_graph.links.empty());
 }
 
 TEST_F(Edit, LibrariesOfFormat1AreConvertedByEditing) {

@@ -80,5 +80,32 @@ TEST(KeypointIndex, AModelWithoutKeypointsHasNoMatches) {
     EXPECT_TRUE(matches[1].empty());
 }
 
+TEST(KeypointIndex, AGraphFindsTheNearestOfAllModels) {
+    ModelLibrary indexed = library();
+    const std::vector<std::uint8_t> bytes = all_keypoint_rows(indexed);
+    indexed.keypoint_graph = build_neighbor_graph({bytes, kShotLength});
+    const SceneKeypoints keypoints = scene();
+    const auto exact = KeypointIndex(library()).match(keypoints);
+    const auto found = KeypointIndex(indexed).match(keypoints);
+    ASSERT_EQ(found.size(), exact.size());
+    std::size_t agreed = 0;
+    for (std::size_t k = 0; k < keypoints.size(); ++k) {
+        std::size_t nearest = 0;
+        for (std::size_t m = 0; m < exact.size(); ++m) {
+            if (exact[m][k].distance < exact[nearest][k].distance) nearest = m;
+            if (!found[m][k].matched()) continue;
+            EXPECT_GE(found[m][k].distance, exact[m][k].distance);
+        }
+        const Correspondence& match = found[nearest][k];
+        if (match.distance != exact[nearest][k].distance) continue;
+        ++agreed;
+        EXPECT_EQ(match.scene_point, keypoints.points[k]);
+        EXPECT_LT(
+            (match.R_scene_model.transpose() * match.R_scene_model - Mat3f::Identity()).norm(),
+            1e-4F);
+    }
+    EXPECT_GE(agreed * 100, keypoints.size() * 97);
+}
+
 }  // namespace
 }  // namespace ostraka

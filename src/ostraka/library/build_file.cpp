@@ -8,6 +8,7 @@
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/io/atomic_file.hpp"
+#include "ostraka/io/file_lock.hpp"
 #include "ostraka/library/bags.hpp"
 #include "ostraka/library/build.hpp"
 #include "ostraka/library/library_copy.hpp"
@@ -18,24 +19,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One process at a time may work on an unfinished build.
-void lock(LibraryStore& store) {
-    store.database().run("PRAGMA locking_mode=EXCLUSIVE; PRAGMA busy_timeout=0;");
-    // A kill can't hurt what the system has been handed; a power failure can, and then the
-    // checksums show it.
+// A kill can't hurt what the system has been handed; a power failure can, and then the checksums
+// show it.
+void write_without_waiting(LibraryStore& store) {
     store.database().run("PRAGMA journal_mode=DELETE; PRAGMA synchronous=OFF;");
-    Transaction transaction(
-        store.database());  // takes the lock, which stays until the file is closed
-    transaction.commit();
 }
 
 void remove_build(const fs::path& path) {
+    fs::remove(path.string() + "-journal");  // first: another build may begin when the file is gone
     fs::remove(path);
-    fs::remove(path.string() + "-journal");
 }
 
+// The file stays, as it is what is locked.
 LibraryStore start_anew(const fs::path& path, const LibrarySettings& settings) {
-    remove_build(path);
+    fs::remove(path.string() + "-journal");
+    fs::resize_file(path, 0);
     return LibraryStore::create(path, settings, path);
 }
 
@@ -45,18 +43,13 @@ bool is_of(LibraryStore& store, const LibrarySettings& settings) {
 
 // An unfinished build with these settings, or a new one.
 LibraryStore open_unfinished(const fs::path& path, const LibrarySettings& settings) {
-    if (fs::exists(path)) {
-        try {
-            LibraryStore store = LibraryStore::open(path, Database::Mode::edit);
-            lock(store);
-            if (is_of(store, settings)) return store;
-        } catch (const FormatError&) {
-            // Killed in its first moments, or of another version: nothing to go on from.
-        }
+    try {
+        LibraryStore store = LibraryStore::open(path, Database::Mode::edit);
+        if (is_of(store, settings)) return store;
+    } catch (const FormatError&) {
+        // Empty, killed in its first moments, or of another version: nothing to go on from.
     }
-    LibraryStore store = start_anew(path, settings);
-    lock(store);
-    return store;
+    return start_anew(path, settings);
 }
 
 // Models in the file that are none of these, or damaged, are removed. Returns what remains to do.
@@ -125,8 +118,11 @@ BuildOutcome build_library_file(std::span<const ModelInput> models, LibrarySetti
     if (settings.sampling == 0.0) settings.sampling = default_sampling(models);
     settings = complete_settings(settings);
     const fs::path unfinished = unfinished_build(path);
-    Work work{open_unfinished(unfinished, settings)};
+    const FileLock lock(unfinished);
+    Work work;
     try {
+        work.store = open_unfinished(unfinished, settings);
+        write_without_waiting(*work.store);
         const std::vector<ModelInput> missing = remaining(*work.store, models);
         work.done = models.size() - missing.size();
         const std::size_t resumed = work.done;
@@ -140,7 +136,7 @@ BuildOutcome build_library_file(std::span<const ModelInput> models, LibrarySetti
         build_records(missing, settings, keep, progress);
         BuildOutcome outcome = finish(*work.store, path, bags);
         outcome.resumed = resumed;
-        fs::remove(unfinished);  // while it is locked, so that no other build begins with it
+        remove_build(unfinished);  // while it is locked, so that no other build begins with it
         return outcome;
     } catch (...) {
         // Worth keeping only if something is done.

@@ -24,6 +24,7 @@ Nearest nearest_of(std::span<const std::vector<Correspondence>> matches) {
     nearest.distance.assign(count, std::numeric_limits<std::int32_t>::max());
     for (const auto& of_model : matches) {
         for (std::size_t k = 0; k < of_model.size(); ++k) {
+            if (!of_model[k].matched()) continue;
             nearest.distance[k] = std::min(nearest.distance[k], of_model[k].distance);
         }
     }
@@ -90,6 +91,7 @@ std::vector<double> keypoint_consensus(std::span<const std::vector<Correspondenc
         claims.reserve(matches[m].size());
         for (std::size_t k = 0; k < matches[m].size(); ++k) {
             const Correspondence& match = matches[m][k];
+            if (!match.matched()) continue;
             const double excess = static_cast<double>(match.distance - nearest.distance[k]);
             claims.push_back({match.R_scene_model,
                               match.scene_point - match.R_scene_model * match.model_point,

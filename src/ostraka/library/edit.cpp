@@ -161,6 +161,17 @@ void rename_model(const fs::path& library, const std::string& from, const std::s
     transaction.commit();
 }
 
+std::size_t index_keypoints(const fs::path& library) {
+    LibraryStore store = open_for_editing(library);
+    Transaction transaction(store.database());
+    const std::vector<std::uint8_t> bytes = all_keypoint_rows(load_store(store));
+    if (bytes.empty()) throw InvalidInput("no model of the library has keypoints");
+    const ByteRows rows{bytes, kShotLength};
+    store.put_graph(build_neighbor_graph(rows));
+    transaction.commit();
+    return rows.size();
+}
+
 void merge_libraries(std::span<const fs::path> libraries, const fs::path& output,
                      const Progress& progress) {
     if (libraries.empty()) throw InvalidInput("nothing to merge");

@@ -36,6 +36,12 @@ void remove_models(const std::filesystem::path& library, std::span<const std::st
 void rename_model(const std::filesystem::path& library, const std::string& from,
                   const std::string& to);
 
+/// Builds a graph of all models' keypoint rows and stores it, so that scans are matched with the
+/// nearest rows only (keypoint_index.hpp): faster from some dozens of models on, and approximate. A
+/// change of models makes it void; then this is to be called again.
+/// @return the number of rows. @throws InvalidInput if no model has keypoints.
+std::size_t index_keypoints(const std::filesystem::path& library);
+
 /// All models of several libraries of equal settings: the same file, byte by byte, as built at once
 /// with these settings (`sampling` given, as it otherwise depends on all models).
 /// @param output  may be one of the libraries.

@@ -8,11 +8,13 @@
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/cloud/cell_grid.hpp"
 #include "ostraka/library/keypoints.hpp"
+#include "ostraka/library/neighbor_graph.hpp"
 
 namespace ostraka {
 namespace {
 
-constexpr std::size_t kBlock = 16;  // keypoints compared with a model's rows at a time
+constexpr std::size_t kGraphBreadth = 96;  // recall .99 of a million rows
+constexpr std::size_t kBlock = 16;         // keypoints compared with a model's rows at a time
 
 // Integer arithmetic: the same sums whatever vectors the machine has. Rows are widened to 16 bits
 // once, so that the products need no unpacking.
@@ -94,18 +96,37 @@ SceneKeypoints scene_keypoints(const PointCloud& cloud, const LibrarySettings& s
     return keypoints;
 }
 
-KeypointIndex::KeypointIndex(const ModelLibrary& library)
-    : library_(&library), rows_(library.models.size()) {
-    parallel_for(rows_.size(),
-                 [&](std::size_t m) { rows_[m] = widen(library.models[m].keypoints.rows); });
+KeypointIndex::KeypointIndex(const ModelLibrary& library) : library_(&library) {
+    if (library.keypoint_graph.links.empty()) {
+        rows_.resize(library.models.size());
+        parallel_for(rows_.size(),
+                     [&](std::size_t m) { rows_[m] = widen(library.models[m].keypoints.rows); });
+        return;
+    }
+    bytes_ = all_keypoint_rows(library);
+    first_rows_.push_back(0);
+    for (const Model& model : library.models) {
+        const auto count = static_cast<std::uint32_t>(model.keypoints.size());
+        first_rows_.push_back(first_rows_.back() + count);
+    }
 }
 
 std::vector<std::vector<Correspondence>> KeypointIndex::match(const SceneKeypoints& scene) const {
-    const std::size_t count = scene.size();
-    std::vector<std::vector<Correspondence>> matches(rows_.size());
+    std::vector<std::vector<Correspondence>> matches(library_->models.size());
     for (std::size_t m = 0; m < matches.size(); ++m) {
-        if (library_->models[m].keypoints.size() > 0) matches[m].resize(count);
+        if (library_->models[m].keypoints.size() > 0) matches[m].resize(scene.size());
     }
+    if (bytes_.empty()) {
+        match_exactly(scene, matches);
+    } else {
+        match_by_graph(scene, matches);
+    }
+    return matches;
+}
+
+void KeypointIndex::match_exactly(const SceneKeypoints& scene,
+                                  std::vector<std::vector<Correspondence>>& matches) const {
+    const std::size_t count = scene.size();
     const std::size_t blocks = (count + kBlock - 1) / kBlock;
     parallel_for(rows_.size() * blocks, [&](std::size_t job) {
         const std::size_t model = job / blocks;
@@ -115,7 +136,29 @@ std::vector<std::vector<Correspondence>> KeypointIndex::match(const SceneKeypoin
         match_block(scene, first, last, library_->models[model].keypoints, rows_[model],
                     matches[model]);
     });
-    return matches;
+}
+
+void KeypointIndex::match_by_graph(const SceneKeypoints& scene,
+                                   std::vector<std::vector<Correspondence>>& matches) const {
+    const ByteRows rows{bytes_, kShotLength};
+    parallel_for(scene.size(), [&](std::size_t k) {
+        thread_local SearchScratch scratch;
+        thread_local std::vector<std::uint8_t> query;
+        const auto wide = scene.rows.values.begin() + static_cast<std::ptrdiff_t>(k * kShotLength);
+        query.assign(wide, wide + kShotLength);
+        for (const RowMatch& found : search_graph(library_->keypoint_graph, rows, query,
+                                                  kGraphMatches, kGraphBreadth, scratch)) {
+            const auto after = std::upper_bound(first_rows_.begin(), first_rows_.end(), found.row);
+            const auto m = static_cast<std::size_t>(after - first_rows_.begin()) - 1;
+            if (matches[m][k].matched()) continue;  // nearest first
+            const Keypoints& model = library_->models[m].keypoints;
+            const std::size_t row = found.row - first_rows_[m];
+            matches[m][k] = {.scene_point = scene.points[k],
+                             .model_point = model.points[row],
+                             .R_scene_model = scene.frames[k] * model.frames[row].transpose(),
+                             .distance = found.distance};
+        }
+    });
 }
 
 }  // namespace ostraka

@@ -62,6 +62,14 @@ std::vector<std::uint8_t> quantize_row(std::span<const float> row) {
     return quantized;
 }
 
+std::vector<std::uint8_t> all_keypoint_rows(const ModelLibrary& library) {
+    std::vector<std::uint8_t> rows;
+    for (const Model& model : library.models) {
+        rows.insert(rows.end(), model.keypoints.rows.begin(), model.keypoints.rows.end());
+    }
+    return rows;
+}
+
 Keypoints describe_keypoints(const PointCloud& surface, std::span<const ModelView> views,
                              const LibrarySettings& settings) {
     std::vector<KdTree> trees;

@@ -153,6 +153,7 @@ ModelLibrary load_library(const std::filesystem::path& path) {
     if (!problems.empty()) throw FormatError(path, "library", problems.front());
     ModelLibrary library = load_store(store);
     store.load_bags(library);
+    store.load_graph(library);
     if (library.models.empty()) throw FormatError(path, "library", "it has no models");
     return library;
 }
@@ -188,6 +189,10 @@ LibraryCheck verify_library(const std::filesystem::path& path, const Progress& p
         if (store.has_bags() && check.problems.empty()) {
             ModelLibrary library = load_store(store);
             store.load_bags(library);
+        }
+        if (store.has_graph() && check.problems.empty()) {
+            ModelLibrary library = load_store(store);
+            store.load_graph(library);
         }
     } catch (const FormatError& error) {
         check.problems.emplace_back(error.what());

@@ -307,11 +307,57 @@ void LibraryStore::load_bags(ModelLibrary& library) {
     }
 }
 
+std::string LibraryStore::models_digest() {
+    return digest_of(read_all(*database_, "SELECT name, sha256 FROM model ORDER BY name", 2));
+}
+
+void LibraryStore::put_graph(const NeighborGraph& graph) {
+    // The table came after format 2; readers that don't know it search exactly.
+    database_->run(
+        "CREATE TABLE IF NOT EXISTS graph(name TEXT PRIMARY KEY, models_sha256 TEXT NOT NULL,"
+        " sha256 TEXT NOT NULL, degree INTEGER NOT NULL, start INTEGER NOT NULL,"
+        " links BLOB NOT NULL); DELETE FROM graph;");
+    const auto* bytes = reinterpret_cast<const unsigned char*>(graph.links.data());
+    const Row content = {std::int64_t{graph.degree}, std::int64_t{graph.start},
+                         Bytes(bytes, bytes + graph.links.size() * sizeof(std::uint32_t))};
+    Statement insert(*database_, "INSERT INTO graph VALUES(?,?,?,?,?,?)");
+    insert_row(insert,
+               {std::string("keypoints"), models_digest(), digest_of(std::vector<Row>{content})},
+               content);
+}
+
+bool LibraryStore::has_graph() {
+    return database_->number("SELECT count(*) FROM sqlite_master WHERE name='graph'") > 0;
+}
+
+void LibraryStore::load_graph(ModelLibrary& library) {
+    if (!has_graph()) return;
+    Statement select(*database_,
+                     "SELECT models_sha256, sha256, degree, start, links FROM graph"
+                     " WHERE name='keypoints'");
+    if (!select.step() || select.text(0) != models_digest()) return;
+    try {
+        const Row content = read_row(select, 2, 3);
+        if (digest_of(std::vector<Row>{content}) != select.text(1))
+            throw InvalidInput("its checksum differs");
+        NeighborGraph graph;
+        graph.degree = static_cast<std::uint32_t>(select.integer(2));
+        graph.start = static_cast<std::uint32_t>(select.integer(3));
+        graph.links = select.blob<std::uint32_t>(4);
+        std::size_t rows = 0;
+        for (const Model& model : library.models) rows += model.keypoints.size();
+        check_graph(graph, rows);
+        library.keypoint_graph = std::move(graph);
+    } catch (const InvalidInput& error) {
+        throw FormatError(named_, "keypoint graph", error.what());
+    }
+}
+
 std::vector<std::pair<std::string, std::string>> LibraryStore::checksums() {
     const auto digest = [&](const char* sql, std::size_t columns) {
         return digest_of(read_all(*database_, sql, columns));
     };
-    return {{"models", digest("SELECT name, sha256 FROM model ORDER BY name", 2)},
+    return {{"models", models_digest()},
             {"codebook", digest("SELECT word, row FROM codebook ORDER BY word", 2)},
             {"bags", digest("SELECT name, rows FROM bag JOIN model ON model=id ORDER BY name", 2)},
             {"settings", digest("SELECT key, value FROM setting ORDER BY key", 2)}};

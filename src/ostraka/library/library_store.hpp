@@ -60,6 +60,12 @@ class LibraryStore {
     /// @param library  joined of all records, by name: gets the codebook and bags.
     /// @throws FormatError if they are damaged.
     void load_bags(ModelLibrary& library);
+    bool has_graph();
+    /// Stores a graph of the keypoint rows of all models that are in the file now.
+    void put_graph(const NeighborGraph& graph);
+    /// Leaves the library without one where the file has none, or models have changed since.
+    /// @param library  joined of all records. @throws FormatError if it is damaged.
+    void load_graph(ModelLibrary& library);
     /// Brings the checksums up to date.
     void seal();
 
@@ -70,6 +76,7 @@ class LibraryStore {
     LibraryStore(std::unique_ptr<Database> database, std::filesystem::path named)
         : database_(std::move(database)), named_(std::move(named)) {}
     std::vector<std::pair<std::string, std::string>> checksums();
+    std::string models_digest();
     void put_settings();
     void load_settings();
 

@@ -11,6 +11,7 @@
 #include "ostraka/cloud/principal_frame.hpp"
 #include "ostraka/descriptors/bag_of_words.hpp"
 #include "ostraka/library/library_settings.hpp"
+#include "ostraka/library/neighbor_graph.hpp"
 #include "ostraka/library/spread.hpp"
 #include "ostraka/mesh/shape.hpp"
 #include "ostraka/mesh/symmetry.hpp"
@@ -79,9 +80,13 @@ struct ModelLibrary {
     std::vector<Model> models;            ///< in the order of their names
     std::vector<Entry> entries;           ///< grouped by model, in the order of `models`
     std::vector<DescriptorTable> tables;  ///< one for each of settings.descriptors
-    Codebook codebook;        ///< of the models' keypoint rows (bags.hpp); may have no words
-    std::vector<float> bags;  ///< entries x codebook.size(): its words in each entry, sum 1
+    Codebook codebook;             ///< of the models' keypoint rows (bags.hpp); may have no words
+    NeighborGraph keypoint_graph;  ///< of all_keypoint_rows(); empty: exact search
+    std::vector<float> bags;       ///< entries x codebook.size(): its words in each entry, sum 1
 };
+
+/// The keypoint rows of all models, one after another in their order.
+std::vector<std::uint8_t> all_keypoint_rows(const ModelLibrary& library);
 
 /// The table of the descriptor with that name; nullptr if the library has none.
 const DescriptorTable* find_table(const ModelLibrary& library, std::string_view descriptor);

@@ -76,7 +76,7 @@ PointCloud with_normals(PointCloud cloud, const LibrarySettings& settings) {
     return remove_invalid(cloud);
 }
 
-bool nearer(const EntryMatch& a, const EntryMatch& b) {
+bool entry_nearer(const EntryMatch& a, const EntryMatch& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.entry < b.entry;
 }
 
@@ -172,7 +172,7 @@ std::vector<EntryMatch> nearest_entries(std::span<const float> distances, std::s
     for (std::uint32_t i = 0; i < matches.size(); ++i) matches[i] = {i, distances[i]};
     k = std::min(k, matches.size());
     std::partial_sort(matches.begin(), matches.begin() + static_cast<std::ptrdiff_t>(k),
-                      matches.end(), nearer);
+                      matches.end(), entry_nearer);
     matches.resize(k);
     return matches;
 }
@@ -184,7 +184,7 @@ std::vector<RankedModel> rank_models(const ModelLibrary& library, std::span<cons
         RankedModel& ranked = ranking[library.entries[i].model];
         ranked.model = library.entries[i].model;
         const EntryMatch match{i, distances[i]};
-        if (ranked.best.entry == kNoIndex || nearer(match, ranked.best)) ranked.best = match;
+        if (ranked.best.entry == kNoIndex || entry_nearer(match, ranked.best)) ranked.best = match;
     }
     std::erase_if(ranking, [](const RankedModel& ranked) { return ranked.model == kNoIndex; });
     const std::vector<EntryMatch> nearest = nearest_entries(distances, k);
@@ -197,7 +197,7 @@ std::vector<RankedModel> rank_models(const ModelLibrary& library, std::span<cons
         ranked.score = nearest.empty() ? 0.0 : double(ranked.votes) / double(nearest.size());
     }
     std::stable_sort(ranking.begin(), ranking.end(), [](const auto& a, const auto& b) {
-        return a.votes != b.votes ? a.votes > b.votes : nearer(a.best, b.best);
+        return a.votes != b.votes ? a.votes > b.votes : entry_nearer(a.best, b.best);
     });
     return ranking;
 }

@@ -25,6 +25,7 @@ std::vector<std::vector<Correspondence>> match_keypoints(const Scan& scan,
     auto matches =
         index.match(scene_keypoints(foreground, library, settings.keypoint_spacing, most));
     for (auto& of_model : matches) {
+        std::erase_if(of_model, [](const Correspondence& match) { return !match.matched(); });
         std::stable_sort(of_model.begin(), of_model.end(),
                          [](const auto& a, const auto& b) { return a.distance < b.distance; });
     }
