@@ -41,7 +41,7 @@ std::vector<Variant> variants_of(const LibraryOptions& options) {
         Variant variant{std::move(name), options.settings};
         variant.settings.selection.redundancy = redundancy;
         variant.settings.selection.budget = budget;
-        variant.settings.selection.spread = spread;
+        if (!spread) variant.settings.selection.spread = 0;
         variants.push_back(std::move(variant));
     };
     add("full views", Redundancy::none, 0, false);

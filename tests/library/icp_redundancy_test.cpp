@@ -48,7 +48,7 @@ TEST(DropByIcp, KeepsOneOfSeveralPosesOfAPieceAndAllThatDiffer) {
 
 TEST(DropByIcp, IsTheSameForAnyNumberOfThreads) {
     LibrarySettings settings = testing::quick_settings();
-    settings.selection = {.redundancy = Redundancy::icp, .budget = 0, .spread = false};
+    settings.selection = {.redundancy = Redundancy::icp, .budget = 0, .spread = 0};
     settings.views.count = 12;
     settings.descriptors.resize(1);
     const auto models = testing::simple_models();

@@ -23,7 +23,7 @@ const ModelLibrary& shared_library() {
 const ModelLibrary& library_of_rows() {
     static const ModelLibrary library = [] {
         LibrarySettings settings = testing::quick_settings();
-        settings.selection.spread = false;
+        settings.selection.spread = 0;
         return build_library(testing::simple_models(), settings);
     }();
     return library;

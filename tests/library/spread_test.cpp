@@ -39,7 +39,7 @@ TEST(Spread, OfOneRowIsThatRow) {
     const std::vector<float> row = random_row(random);
     const std::vector<float> other = random_row(random);
     Spread spread;
-    append_spread(row, kLength, spread);
+    append_spread(row, kLength, 3, spread);
     const SpreadIndex index(spread, kLength);
     EXPECT_NEAR(index.distances(row)[0], 0.0F, 1e-3F);
     std::vector<float> difference = row;
@@ -56,7 +56,7 @@ TEST(Spread, APatchIsTheSegmentThatItsRowsLieOn) {
     const float length = norm(along);
     for (float& value : along) value /= length;
     Spread spread;
-    append_spread(line(center, along, {-0.2F, -0.1F, 0.0F, 0.1F, 0.2F}), kLength, spread);
+    append_spread(line(center, along, {-0.2F, -0.1F, 0.0F, 0.1F, 0.2F}), kLength, 3, spread);
     const SpreadIndex index(spread, kLength);
     const double reach = 2.0 * std::sqrt((0.04 + 0.01) * 2.0 / 5.0);
     for (const float a : {-0.9F, -0.28F, -0.1F, 0.0F, 0.25F, 0.6F}) {
@@ -73,9 +73,9 @@ TEST(Spread, APatchIsNeverFartherThanItsMeanNorDoesItReachBeyondItsRows) {
         const std::vector<float> row = random_row(random);
         rows.insert(rows.end(), row.begin(), row.end());
     }
-    append_spread(rows, kLength, spread);
+    append_spread(rows, kLength, 3, spread);
     Spread point;
-    append_spread(spread.means, kLength, point);
+    append_spread(spread.means, kLength, 3, point);
     for (int trial = 0; trial < 50; ++trial) {
         const std::vector<float> query = random_row(random);
         const float to_patch = SpreadIndex(spread, kLength).distances(query)[0];
@@ -89,7 +89,7 @@ TEST(Spread, PartsPutTogetherAreTheWhole) {
     Spread whole;
     for (int entry = 0; entry < 5; ++entry) {
         const std::vector<float> center = random_row(random);
-        append_spread(line(center, random_row(random), {0.0F, 0.3F, 1.0F}), kLength, whole);
+        append_spread(line(center, random_row(random), {0.0F, 0.3F, 1.0F}), kLength, 3, whole);
     }
     Spread joined = whole.part(0, 2, kLength);
     joined.append(whole.part(2, 5, kLength));

@@ -27,6 +27,12 @@ class DisjointSets {
         b = find(b);
         parent_[std::max(a, b)] = std::min(a, b);
     }
+    /// Makes every item's parent its root: parents have smaller numbers, so one ascending pass does.
+    void flatten() {
+        for (std::uint32_t& parent : parent_) parent = parent_[parent];
+    }
+    /// The root, after flatten().
+    std::uint32_t parent(std::uint32_t item) const { return parent_[item]; }
 
   private:
     std::vector<std::uint32_t> parent_;

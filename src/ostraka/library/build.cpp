@@ -43,6 +43,10 @@ LibrarySettings complete_settings(LibrarySettings settings) {
     if (settings.selection.budget < (unlimited ? 0 : 1)) {
         throw InvalidInput("budget must be at least 1");
     }
+    if (settings.selection.spread < 0 || settings.selection.spread > kMostSpreadDirections) {
+        throw InvalidInput(
+            fmt::format("spread must be 0 to {} directions", kMostSpreadDirections));
+    }
     for (const double fraction : settings.cuts.fractions) {
         if (!(fraction > 0.0 && fraction < 1.0)) {
             throw InvalidInput(fmt::format("cut fraction {:g} is not between 0 and 1", fraction));

@@ -40,12 +40,11 @@ void to_model_frame(ModelRecord& built, const Pose& T_model_canonical) {
     }
 }
 
-// What entries stand for is averaged over many pieces, each of which needs less care: with a
-// quarter of ESF's samples, which would take most of a build's time, recognition rates are the
-// same.
+// What entries stand for is averaged over many pieces, each of which needs less care: with an
+// eighth of ESF's samples, which would take most of a build's time, recognition rates are the same.
 LibrarySettings for_companions(LibrarySettings settings) {
     for (AnyDescriptor& descriptor : settings.descriptors) {
-        if (auto* esf = std::get_if<EsfSettings>(&descriptor)) esf->samples /= 4;
+        if (auto* esf = std::get_if<EsfSettings>(&descriptor)) esf->samples /= 8;
     }
     return settings;
 }
@@ -81,6 +80,7 @@ void describe_entries(ModelRecord& record, const Choice& choice, std::span<const
     for (std::size_t i = 0; i < described.size(); ++i) {
         members[i < entries ? i : companions[i - entries].entry].push_back(i);
     }
+    const auto directions = static_cast<std::size_t>(settings.selection.spread);
     record.rows.resize(settings.descriptors.size());
     record.spreads.resize(settings.descriptors.size());
     parallel_for(settings.descriptors.size(), [&](std::size_t t) {
@@ -94,7 +94,7 @@ void describe_entries(ModelRecord& record, const Choice& choice, std::span<const
                 const std::vector<float> row = comparable_row(described[i][t], metric);
                 rows.insert(rows.end(), row.begin(), row.end());
             }
-            append_spread(rows, own.size(), record.spreads[t]);
+            append_spread(rows, own.size(), directions, record.spreads[t]);
         }
     });
 }

@@ -16,6 +16,9 @@ namespace {
 constexpr int kAxisSteps = 12;           // turns about a continuous axis that stand for all
 constexpr std::size_t kMostImages = 24;  // symmetric images that a piece is compared with
 
+constexpr std::size_t kMostCompanions = 32;  // of an entry: all of them (about 40) cost more time
+                                             // than they gain
+
 // A whole view or a subpart of one, before it is chosen.
 struct Candidate {
     std::size_t view = 0;
@@ -156,14 +159,19 @@ std::vector<PieceTriangles> triangulate_views(std::span<const ModelView> views,
     return triangles;
 }
 
-// The chosen candidates excepted: they are entries.
+// The candidates that each entry stands for, or some of them, evenly; itself excepted.
 std::vector<Companion> companions(Pool& pool, const SelectionResult& selected) {
-    std::vector<Companion> result;
+    std::vector<std::vector<std::uint32_t>> of_entry(selected.chosen.size());
     for (std::uint32_t i = 0; i < selected.nearest.size(); ++i) {
         const std::uint32_t entry = selected.nearest[i];
-        if (entry == kNoIndex || selected.chosen[entry] == i) continue;
-        Candidate& candidate = pool.candidates[i];
-        result.push_back({entry, candidate.view, std::move(candidate.indices)});
+        if (entry != kNoIndex && selected.chosen[entry] != i) of_entry[entry].push_back(i);
+    }
+    std::vector<Companion> result;
+    for (std::uint32_t e = 0; e < of_entry.size(); ++e) {
+        for (const std::uint32_t k : thin_out(of_entry[e].size(), kMostCompanions)) {
+            Candidate& candidate = pool.candidates[of_entry[e][k]];
+            result.push_back({e, candidate.view, std::move(candidate.indices)});
+        }
     }
     return result;
 }
@@ -196,7 +204,7 @@ Choice choose_entries(std::span<const ModelView> views, const PointCloud& surfac
                                                     views[candidate.view].cloud.size(),
                                                     candidate.indices));
     }
-    if (settings.selection.spread) choice.companions = companions(pool, selected);
+    if (settings.selection.spread > 0) choice.companions = companions(pool, selected);
     return choice;
 }
 

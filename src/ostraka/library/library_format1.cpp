@@ -177,7 +177,7 @@ ModelLibrary load_content(Database& database) {
     Statement settings(database, "SELECT key, value FROM setting");
     while (settings.step()) texts[settings.text(0)] = settings.text(1);
     texts.try_emplace("selection.redundancy", "surface");
-    texts.try_emplace("selection.spread", "false");
+    texts.try_emplace("selection.spread", "0");
     ModelLibrary library;
     library.settings = settings_from_text(texts);
     Statement models(database, "SELECT * FROM model ORDER BY id");

@@ -6,21 +6,29 @@
 #include <queue>
 
 #include "ostraka/base/parallel.hpp"
+#include "ostraka/base/vector_clones.hpp"
+#include "ostraka/library/element_table.hpp"
 
 namespace ostraka {
 namespace {
 
 constexpr std::array<std::string_view, 3> kNames = {"surface", "icp", "none"};
 
-// Sets in one block, with their sizes: overlaps of one, or its best image, with all others.
+// Raises each of `row` to the overlap of a set of `size` elements with one of `sizes`.
+OSTRAKA_VECTOR_CLONES void raise_ratios(int size, std::span<const int> sizes,
+                                        std::span<const int> common, std::span<float> row) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        const int either = std::max(1, size + sizes[i] - common[i]);
+        row[i] = std::max(row[i], static_cast<float>(common[i]) / static_cast<float>(either));
+    }
+}
+
+// Overlaps of a set, or its best image, with each of many.
 class OverlapRow {
   public:
     explicit OverlapRow(std::span<const ElementMap> images) : images_(images) {}
 
-    void add(const ElementSet& set) {
-        sets_.push_back(set);
-        sizes_.push_back(count_elements(set));
-    }
+    void add(const ElementSet& set) { sets_.add(set); }
     std::size_t size() const { return sets_.size(); }
     /// Intersection over union of `set` with each, into `row` (replaced).
     void with(const ElementSet& set, std::vector<float>& row) const {
@@ -40,25 +48,18 @@ class OverlapRow {
   private:
     void raise(const ElementSet& set, std::vector<float>& row) const {
         thread_local std::vector<int> common;
-        common.resize(sets_.size());
-        count_common(set, sets_, common);
-        const int size = count_elements(set);
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            const int either = size + sizes_[i] - common[i];
-            if (either > 0) {
-                row[i] =
-                    std::max(row[i], static_cast<float>(common[i]) / static_cast<float>(either));
-            }
-        }
+        sets_.count_common(set, common);
+        raise_ratios(count_elements(set), sets_.counts(), common, row);
     }
-    // Two sets overlap at most by the ratio of their sizes, which spares most of the counting.
     void seek(const ElementSet& set, double least, std::uint32_t& best, double& most) const {
+        thread_local std::vector<int> common;
+        sets_.count_common(set, common);
         const int size = count_elements(set);
-        for (std::uint32_t i = 0; i < sets_.size(); ++i) {
-            const auto [smaller, larger] = std::minmax(size, sizes_[i]);
-            const double bound = std::max(least, most);
-            if (larger == 0 || static_cast<double>(smaller) < bound * larger) continue;
-            const double found = overlap(set, sets_[i]);
+        const double clearly_less = least - 1e-6;  // spares most of the divisions
+        for (std::uint32_t i = 0; i < common.size(); ++i) {
+            const int either = std::max(1, size + sets_.counts()[i] - common[i]);
+            if (common[i] < clearly_less * either) continue;
+            const double found = static_cast<double>(common[i]) / either;
             if (found < least || found < most || (found == most && i >= best)) continue;
             best = i;
             most = found;
@@ -66,8 +67,7 @@ class OverlapRow {
     }
 
     std::span<const ElementMap> images_;
-    std::vector<ElementSet> sets_;
-    std::vector<int> sizes_;
+    ElementTable sets_;
 };
 
 // Candidates that differ, and how many candidates each of them stands for, itself included.
@@ -91,6 +91,16 @@ Ground drop_redundant(std::span<const ElementSet> candidates, double max_overlap
         kept_sets.add(candidates[i]);
     }
     return ground;
+}
+
+// Weighted sum of what `row` adds to `covered`. Four partial sums in a fixed order.
+double gain_over(std::span<const float> row, std::span<const float> covered,
+                 std::span<const double> weights) {
+    std::array<double, 4> sums{};
+    for (std::size_t o = 0; o < row.size(); ++o) {
+        sums[o % 4] += weights[o] * double{std::max(0.0F, row[o] - covered[o])};
+    }
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
 // A candidate with an upper bound of its gain; ties go to the earlier candidate.
@@ -136,11 +146,7 @@ SelectionResult select_entries(std::span<const ElementSet> candidates,
     for (const std::uint32_t i : ground.candidates) all.add(candidates[i]);
     const auto gain_of = [&](std::uint32_t candidate, std::vector<float>& row) {
         all.with(candidates[candidate], row);
-        double gain = 0.0;
-        for (std::size_t o = 0; o < covered.size(); ++o) {
-            gain += ground.weights[o] * double{std::max(0.0F, row[o] - covered[o])};
-        }
-        return gain;
+        return gain_over(row, covered, ground.weights);
     };
     std::vector<double> gains(count);
     parallel_for(

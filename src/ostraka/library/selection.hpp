@@ -30,14 +30,16 @@ enum class Redundancy {
 std::string_view redundancy_name(Redundancy redundancy);
 std::optional<Redundancy> parse_redundancy(std::string_view name);
 
+inline constexpr int kMostSpreadDirections = 64;
+
 struct SelectionSettings {
     Redundancy redundancy = Redundancy::surface;
     int budget = 48;  ///< entries a model, at most; the same for all, so that votes are fair. 0:
                       ///< any number, for `icp` and `none`; there, others are thinned out evenly
     double max_overlap = 0.9;  ///< overlap (intersection over union) with an earlier candidate that
                                ///< makes one redundant; above 1 nothing is
-    bool spread = true;  ///< whether an entry knows how the candidates that it stands for vary
-                         ///< (spread.hpp); with `surface` only
+    int spread = 16;  ///< principal directions in which the candidates that an entry stands for
+                      ///< vary (spread.hpp), 0 to 64; 0: none are kept; with `surface` only
 };
 
 /// Overlaps at which coverage is reported.

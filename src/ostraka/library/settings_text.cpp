@@ -116,6 +116,9 @@ LibrarySettings settings_from_text(const SettingTexts& texts) {
     const auto redundancy = parse_redundancy(reader.find("selection.redundancy"));
     if (!redundancy) Reader::fail("selection.redundancy", reader.find("selection.redundancy"));
     settings.selection.redundancy = *redundancy;
+    if (settings.selection.spread < 0 || settings.selection.spread > kMostSpreadDirections) {
+        Reader::fail("selection.spread", reader.find("selection.spread"));
+    }
     settings.cuts.fractions.clear();
     for (const std::string& text : split(reader.find("cuts.fractions"))) {
         double fraction = 0.0;

@@ -12,7 +12,6 @@
 namespace ostraka {
 namespace {
 
-constexpr std::size_t kVectors = 1 + kSpreadDirections;
 constexpr double kReach = 2.0;    // of a patch, in standard deviations of what it was made of
 constexpr float kSteps = 127.0F;  // of a direction's largest coordinate
 
@@ -54,43 +53,45 @@ void Spread::append(const Spread& other) {
 
 Spread Spread::part(std::size_t first, std::size_t last, std::size_t length) const {
     if (empty()) return {};
-    return {
-        slice(means, first * length, last * length),
-        slice(directions, first * kSpreadDirections * length, last * kSpreadDirections * length),
-        slice(scales, first * kSpreadDirections, last * kSpreadDirections)};
+    const std::size_t each = count(length);
+    return {slice(means, first * length, last * length),
+            slice(directions, first * each * length, last * each * length),
+            slice(scales, first * each, last * each)};
 }
 
-void append_spread(std::span<const float> rows, std::size_t length, Spread& spread) {
+void append_spread(std::span<const float> rows, std::size_t length, std::size_t count,
+                   Spread& spread) {
     using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const auto count = static_cast<Eigen::Index>(rows.size() / length);
-    const Eigen::Map<const RowMajor> matrix(rows.data(), count, static_cast<Eigen::Index>(length));
+    const auto row_count = static_cast<Eigen::Index>(rows.size() / length);
+    const Eigen::Map<const RowMajor> matrix(rows.data(), row_count, static_cast<Eigen::Index>(length));
     Eigen::MatrixXd centered = matrix.cast<double>();
     const Eigen::RowVectorXd mean = centered.colwise().mean();
     centered.rowwise() -= mean;
     for (const double value : mean) spread.means.push_back(static_cast<float>(value));
     // The principal directions by way of the small matrix of scalar products between rows.
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(centered * centered.transpose());
-    for (std::size_t d = 0; d < kSpreadDirections; ++d) {
-        const Eigen::Index column = count - 1 - static_cast<Eigen::Index>(d);
+    for (std::size_t d = 0; d < count; ++d) {
+        const Eigen::Index column = row_count - 1 - static_cast<Eigen::Index>(d);
         Eigen::VectorXd direction = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(length));
-        // |centered^T u| is the root of the eigenvalue, which is `count` variances. Below rounding
-        // there is no direction.
+        // |centered^T u| is the root of the eigenvalue, which is `row_count` variances. Below
+        // rounding there is no direction.
         if (column >= 0 && solver.eigenvalues()[column] > 1e-9) {
             direction = centered.transpose() * solver.eigenvectors().col(column) *
-                        (kReach / std::sqrt(static_cast<double>(count)));
+                        (kReach / std::sqrt(static_cast<double>(row_count)));
         }
         append_direction(direction, spread);
     }
 }
 
-SpreadIndex::SpreadIndex(const Spread& spread, std::size_t length) : length_(length) {
+SpreadIndex::SpreadIndex(const Spread& spread, std::size_t length)
+    : length_(length), count_(spread.count(length)) {
     const std::size_t entries = spread.means.size() / length;
-    vectors_.reserve(entries * kVectors * length);
+    vectors_.reserve(entries * (1 + count_) * length);
     for (std::size_t e = 0; e < entries; ++e) {
         const auto mean = spread.means.begin() + static_cast<std::ptrdiff_t>(e * length);
         vectors_.insert(vectors_.end(), mean, mean + static_cast<std::ptrdiff_t>(length));
-        for (std::size_t d = 0; d < kSpreadDirections; ++d) {
-            const std::size_t row = e * kSpreadDirections + d;
+        for (std::size_t d = 0; d < count_; ++d) {
+            const std::size_t row = e * count_ + d;
             for (std::size_t i = 0; i < length; ++i) {
                 vectors_.push_back(spread.scales[row] *
                                    static_cast<float>(spread.directions[row * length + i]));
@@ -98,8 +99,8 @@ SpreadIndex::SpreadIndex(const Spread& spread, std::size_t length) : length_(len
         }
     }
     for (std::size_t e = 0; e < entries; ++e) {
-        const float* center = vectors_.data() + e * kVectors * length;
-        for (std::size_t v = 0; v < kVectors; ++v) {
+        const float* center = vectors_.data() + e * (1 + count_) * length;
+        for (std::size_t v = 0; v <= count_; ++v) {
             const float* vector = center + v * length;
             squares_.push_back(dot(vector, vector, length));
             if (v > 0) offsets_.push_back(dot(center, vector, length));
@@ -108,18 +109,18 @@ SpreadIndex::SpreadIndex(const Spread& spread, std::size_t length) : length_(len
 }
 
 std::vector<float> SpreadIndex::distances(std::span<const float> row) const {
-    const std::size_t entries = squares_.size() / kVectors;
+    const std::size_t entries = squares_.size() / (1 + count_);
     const float row_square = dot(row.data(), row.data(), length_);
     std::vector<float> result(entries);
     for (std::size_t e = 0; e < entries; ++e) {
-        const float* vectors = vectors_.data() + e * kVectors * length_;
+        const float* vectors = vectors_.data() + e * (1 + count_) * length_;
         float square =
-            row_square + squares_[e * kVectors] - 2.0F * dot(row.data(), vectors, length_);
-        for (std::size_t d = 0; d < kSpreadDirections; ++d) {
-            const float length2 = squares_[e * kVectors + 1 + d];
+            row_square + squares_[e * (1 + count_)] - 2.0F * dot(row.data(), vectors, length_);
+        for (std::size_t d = 0; d < count_; ++d) {
+            const float length2 = squares_[e * (1 + count_) + 1 + d];
             if (!(length2 > 0.0F)) continue;
             const float along = dot(row.data(), vectors + (1 + d) * length_, length_) -
-                                offsets_[e * kSpreadDirections + d];
+                                offsets_[e * count_ + d];
             const float share = std::clamp(along / length2, -1.0F, 1.0F);
             square -= share * (2.0F * along - share * length2);
         }

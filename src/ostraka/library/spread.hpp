@@ -16,17 +16,18 @@
 
 namespace ostraka {
 
-/// Directions kept for each entry.
-inline constexpr std::size_t kSpreadDirections = 5;
-
 /// The spreads of one descriptor, of all entries in their order. In the space of comparable_row()
 /// with the descriptor's best_metric().
 struct Spread {
     std::vector<float> means;             ///< entries x length
-    std::vector<std::int8_t> directions;  ///< entries x kSpreadDirections x length, orthogonal
-    std::vector<float> scales;            ///< entries x kSpreadDirections: a direction times its
-                                          ///< scale reaches from the mean to the patch's edge
+    std::vector<std::int8_t> directions;  ///< entries x count x length, orthogonal
+    std::vector<float> scales;            ///< entries x count: a direction times its scale reaches
+                                          ///< from the mean to the patch's edge
     bool empty() const { return means.empty(); }
+    /// Directions of each entry. @param length  of a row.
+    std::size_t count(std::size_t length) const {
+        return empty() ? 0 : scales.size() / (means.size() / length);
+    }
     void append(const Spread& other);
     /// Of the entries [first, last). @param length  of a row.
     Spread part(std::size_t first, std::size_t last, std::size_t length) const;
@@ -35,7 +36,9 @@ struct Spread {
 /// Appends the spread of one entry.
 /// @param rows    comparable rows of what it stands for, itself included, one after another.
 /// @param length  of a row.
-void append_spread(std::span<const float> rows, std::size_t length, Spread& spread);
+/// @param count   of directions; those beyond the number of rows are zero.
+void append_spread(std::span<const float> rows, std::size_t length, std::size_t count,
+                   Spread& spread);
 
 /// Spreads made ready to be searched.
 class SpreadIndex {
@@ -48,6 +51,7 @@ class SpreadIndex {
 
   private:
     std::size_t length_ = 0;
+    std::size_t count_ = 0;       // of directions
     std::vector<float> vectors_;  // entries x (mean, directions) x length
     std::vector<float> squares_;  // entries x: |mean|^2, then |direction|^2 of each
     std::vector<float> offsets_;  // entries x directions: mean . direction

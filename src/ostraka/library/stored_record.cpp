@@ -258,11 +258,12 @@ Entry unpack_entry(const Row& row, const MeshShape& shape) {
     return entry;
 }
 
-Spread unpack_spread(const Row& row, std::size_t entries, std::size_t length) {
+Spread unpack_spread(const Row& row, std::size_t entries, std::size_t length,
+                     std::size_t directions) {
     Spread spread;
     spread.means = values<float>(row, 2);
     if (!spread.empty()) spread.means = exactly<float>(row, 2, entries * length);
-    const std::size_t patches = spread.empty() ? 0 : entries * kSpreadDirections;
+    const std::size_t patches = spread.empty() ? 0 : entries * directions;
     spread.directions = exactly<std::int8_t>(row, 3, patches * length);
     spread.scales = exactly<float>(row, 4, patches);
     return spread;
@@ -330,7 +331,9 @@ ModelRecord from_stored(const StoredRecord& stored, const LibrarySettings& setti
         }
         const std::size_t length = descriptor_length(descriptor);
         record.rows.push_back(exactly<float>(*found, 1, record.entries.size() * length));
-        record.spreads.push_back(unpack_spread(*found, record.entries.size(), length));
+        record.spreads.push_back(
+            unpack_spread(*found, record.entries.size(), length,
+                          static_cast<std::size_t>(settings.selection.spread)));
     }
     return record;
 }

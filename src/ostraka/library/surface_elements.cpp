@@ -9,8 +9,11 @@ namespace ostraka {
 
 double overlap(const ElementSet& a, const ElementSet& b) {
     int common = 0;
-    count_common(a, {&b, 1}, {&common, 1});
-    const int either = count_elements(a) + count_elements(b) - common;
+    int either = 0;
+    for (std::size_t w = 0; w < a.size(); ++w) {
+        common += std::popcount(a[w] & b[w]);
+        either += std::popcount(a[w] | b[w]);
+    }
     return either > 0 ? static_cast<double>(common) / either : 0.0;
 }
 
@@ -18,15 +21,6 @@ int count_elements(const ElementSet& set) {
     int count = 0;
     for (const std::uint64_t word : set) count += std::popcount(word);
     return count;
-}
-
-__attribute__((target_clones("default", "popcnt", "arch=icelake-server"))) void count_common(
-    const ElementSet& a, std::span<const ElementSet> others, std::span<int> result) {
-    for (std::size_t i = 0; i < others.size(); ++i) {
-        int common = 0;
-        for (std::size_t w = 0; w < a.size(); ++w) common += std::popcount(a[w] & others[i][w]);
-        result[i] = common;
-    }
 }
 
 SurfaceElements::SurfaceElements(const PointCloud& surface) : tree_({}) {

@@ -29,10 +29,6 @@ double overlap(const ElementSet& a, const ElementSet& b);
 /// Number of elements in a set.
 int count_elements(const ElementSet& set);
 
-/// Elements that one set shares with each of many, into `result` (same length). The popcounts run
-/// in hardware where there is any: integers, so the same numbers everywhere.
-void count_common(const ElementSet& a, std::span<const ElementSet> others, std::span<int> result);
-
 /// The Voronoi cells of evenly spread points on a surface.
 class SurfaceElements {
   public:
