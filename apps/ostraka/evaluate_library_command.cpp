@@ -14,6 +14,7 @@
 #include "ostraka/evaluation/segments.hpp"
 #include "ostraka/library/build.hpp"
 #include "ostraka/library/library_file.hpp"
+#include "ostraka/library/model_record.hpp"
 
 namespace ostraka::app {
 namespace {
@@ -33,6 +34,7 @@ struct LibraryOptions {
 struct Variant {
     std::string name;
     LibrarySettings settings;
+    int thinned = 0;  // entries a model that are taken of the variant before; 0: built
 };
 
 std::vector<Variant> variants_of(const LibraryOptions& options) {
@@ -48,11 +50,17 @@ std::vector<Variant> variants_of(const LibraryOptions& options) {
     variants.back().settings.full_views_only = true;
     add("all candidates", Redundancy::none, 0, false);
     if (!options.without_icp) add("ICP", Redundancy::icp, 0, false);
-    for (const double value : parse_numbers(options.budgets, "--budgets")) {
+    const std::vector<double> budgets = parse_numbers(options.budgets, "--budgets");
+    for (const double value : budgets) {
         const int budget = static_cast<int>(value);
         if (!options.without_icp) {
+            // Registering all pairs takes minutes; once is enough.
             add(fmt::format("ICP, {}", budget), Redundancy::icp, budget, false);
+            variants.back().thinned = budget;
         }
+    }
+    for (const double value : budgets) {
+        const int budget = static_cast<int>(value);
         add(fmt::format("surface, {}, no spread", budget), Redundancy::surface, budget, false);
         add(fmt::format("surface, {}", budget), Redundancy::surface, budget, true);
     }
@@ -100,11 +108,17 @@ void run_library(LibraryOptions& options) {
     std::vector<std::vector<std::string>> rows = {{"library", "entries", "MB", "build s"}};
     rows.front().insert(rows.front().end(), columns.begin(), columns.end());
     Json results = Json::array();
+    ModelLibrary built;
+    double seconds = 0.0;
     for (const Variant& variant : variants_of(options)) {
         say(variant.name);
         const Stopwatch watch;
-        const ModelLibrary library = build_library(models, variant.settings, progress_bar());
-        const double seconds = watch.seconds();
+        if (variant.thinned == 0) {
+            built = build_library(models, variant.settings, progress_bar());
+            seconds = watch.seconds();
+        }
+        const ModelLibrary library =
+            variant.thinned == 0 ? built : thin_library(built, variant.thinned);
         const std::uintmax_t bytes = file_size_of(library);
         const auto rates = recognition_rates(EntryIndex(library), segments, 1);
         rows.push_back({variant.name, std::to_string(library.entries.size()),

@@ -6,6 +6,7 @@
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/base/random.hpp"
 #include "ostraka/library/build.hpp"
+#include "ostraka/library/model_record.hpp"
 #include "support/simple_models.hpp"
 
 namespace ostraka {
@@ -64,7 +65,11 @@ TEST(DropByIcp, IsTheSameForAnyNumberOfThreads) {
     EXPECT_GT(one.models[0].counts.redundant, 0);
     EXPECT_EQ(none.models[0].counts.redundant, 0);
     settings.selection.budget = 10;
-    EXPECT_EQ(build_library(models, settings).entries.size(), 20U);
+    const ModelLibrary ten = build_library(models, settings);
+    EXPECT_EQ(ten.entries.size(), 20U);
+    const ModelLibrary thinned = thin_library(none, 10);
+    EXPECT_EQ(thinned.tables[0].rows, ten.tables[0].rows);
+    EXPECT_EQ(thinned.entries.back().direction, ten.entries.back().direction);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/library/selection.hpp"
 
 namespace ostraka {
 
@@ -57,6 +58,31 @@ std::vector<ModelRecord> split_library(ModelLibrary library) {
         first = last;
     }
     return records;
+}
+
+ModelLibrary thin_library(const ModelLibrary& library, int budget) {
+    std::vector<ModelRecord> thinned;
+    for (const ModelRecord& record : split_library(library)) {
+        ModelRecord fewer;
+        fewer.model = record.model;
+        fewer.rows.resize(record.rows.size());
+        fewer.spreads.resize(record.spreads.size());
+        for (const std::uint32_t e :
+             thin_out(record.entries.size(), static_cast<std::size_t>(budget))) {
+            fewer.entries.push_back(record.entries[e]);
+            for (std::size_t t = 0; t < record.rows.size(); ++t) {
+                const std::size_t length = record.rows[t].size() / record.entries.size();
+                const auto row = record.rows[t].begin() + static_cast<std::ptrdiff_t>(e * length);
+                fewer.rows[t].insert(fewer.rows[t].end(), row,
+                                     row + static_cast<std::ptrdiff_t>(length));
+                fewer.spreads[t].append(record.spreads[t].part(e, e + 1, length));
+            }
+        }
+        thinned.push_back(std::move(fewer));
+    }
+    LibrarySettings settings = library.settings;
+    settings.selection.budget = budget;
+    return join_records(settings, std::move(thinned));
 }
 
 }  // namespace ostraka

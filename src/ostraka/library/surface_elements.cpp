@@ -37,10 +37,18 @@ std::vector<std::uint32_t> SurfaceElements::label(const PointCloud& cloud) const
     constexpr std::size_t kTried = 6;
     std::vector<std::uint32_t> labels(cloud.size(), kNoIndex);
     std::vector<Neighbor> nearest;
+    const auto faces = [&](std::uint32_t element, std::size_t i) {
+        return normals_[element].dot(cloud.normals[i]) > 0.0F;
+    };
     for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const std::uint32_t first = tree_.nearest(cloud.points[i]).index;
+        if (faces(first, i)) {  // nearly always, and found at a third of the cost of several
+            labels[i] = first;
+            continue;
+        }
         tree_.nearest(cloud.points[i], kTried, nearest);
         for (const Neighbor& neighbor : nearest) {
-            if (normals_[neighbor.index].dot(cloud.normals[i]) > 0.0F) {
+            if (faces(neighbor.index, i)) {
                 labels[i] = neighbor.index;
                 break;
             }
