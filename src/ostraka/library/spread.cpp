@@ -15,16 +15,32 @@ namespace {
 constexpr double kReach = 2.0;    // of a patch, in standard deviations of what it was made of
 constexpr float kSteps = 127.0F;  // of a direction's largest coordinate
 
-// Eight partial sums in a fixed order: the same bits whatever vectors the machine has.
-OSTRAKA_VECTOR_CLONES float dot(const float* a, const float* b, std::size_t length) {
-    std::array<float, 8> sums{};
+constexpr std::size_t kLanes = 16;  // of a scalar product: two vectors, so that sums needn't wait
+
+// Partial sums in a fixed order: the same bits whatever vectors the machine has.
+template <class T>
+__attribute__((always_inline)) inline float dot_with(const float* a, const T* b,
+                                                     std::size_t length) {
+    std::array<float, kLanes> sums{};
     std::size_t i = 0;
-    for (; i + 8 <= length; i += 8) {
-        for (std::size_t lane = 0; lane < 8; ++lane) sums[lane] += a[i + lane] * b[i + lane];
+    for (; i + kLanes <= length; i += kLanes) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            sums[lane] += a[i + lane] * static_cast<float>(b[i + lane]);
+        }
     }
-    for (; i < length; ++i) sums[i % 8] += a[i] * b[i];
-    return ((sums[0] + sums[4]) + (sums[2] + sums[6])) +
-           ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+    for (; i < length; ++i) sums[i % kLanes] += a[i] * static_cast<float>(b[i]);
+    for (std::size_t half = kLanes / 2; half > 0; half /= 2) {
+        for (std::size_t lane = 0; lane < half; ++lane) sums[lane] += sums[lane + half];
+    }
+    return sums[0];
+}
+
+OSTRAKA_VECTOR_CLONES float dot(const float* a, const float* b, std::size_t length) {
+    return dot_with(a, b, length);
+}
+
+OSTRAKA_VECTOR_CLONES float dot_bytes(const float* a, const std::int8_t* b, std::size_t length) {
+    return dot_with(a, b, length);
 }
 
 template <class T>
@@ -84,45 +100,35 @@ void append_spread(std::span<const float> rows, std::size_t length, std::size_t 
 }
 
 SpreadIndex::SpreadIndex(const Spread& spread, std::size_t length)
-    : length_(length), count_(spread.count(length)) {
+    : length_(length), count_(spread.count(length)), spread_(&spread) {
     const std::size_t entries = spread.means.size() / length;
-    vectors_.reserve(entries * (1 + count_) * length);
+    std::vector<float> direction(length);
     for (std::size_t e = 0; e < entries; ++e) {
-        const auto mean = spread.means.begin() + static_cast<std::ptrdiff_t>(e * length);
-        vectors_.insert(vectors_.end(), mean, mean + static_cast<std::ptrdiff_t>(length));
+        const float* mean = spread_->means.data() + e * length;
+        mean_squares_.push_back(dot(mean, mean, length));
         for (std::size_t d = 0; d < count_; ++d) {
-            const std::size_t row = e * count_ + d;
-            for (std::size_t i = 0; i < length; ++i) {
-                vectors_.push_back(spread.scales[row] *
-                                   static_cast<float>(spread.directions[row * length + i]));
-            }
-        }
-    }
-    for (std::size_t e = 0; e < entries; ++e) {
-        const float* center = vectors_.data() + e * (1 + count_) * length;
-        for (std::size_t v = 0; v <= count_; ++v) {
-            const float* vector = center + v * length;
-            squares_.push_back(dot(vector, vector, length));
-            if (v > 0) offsets_.push_back(dot(center, vector, length));
+            const std::int8_t* bytes = spread_->directions.data() + (e * count_ + d) * length;
+            std::copy(bytes, bytes + length, direction.begin());
+            const float scale = spread_->scales[e * count_ + d];
+            squares_.push_back(scale * scale * dot_bytes(direction.data(), bytes, length));
+            offsets_.push_back(scale * dot_bytes(mean, bytes, length));
         }
     }
 }
 
 std::vector<float> SpreadIndex::distances(std::span<const float> row) const {
-    const std::size_t entries = squares_.size() / (1 + count_);
+    std::vector<float> result(mean_squares_.size());
     const float row_square = dot(row.data(), row.data(), length_);
-    std::vector<float> result(entries);
-    for (std::size_t e = 0; e < entries; ++e) {
-        const float* vectors = vectors_.data() + e * (1 + count_) * length_;
-        float square =
-            row_square + squares_[e * (1 + count_)] - 2.0F * dot(row.data(), vectors, length_);
-        for (std::size_t d = 0; d < count_; ++d) {
-            const float length2 = squares_[e * (1 + count_) + 1 + d];
-            if (!(length2 > 0.0F)) continue;
-            const float along = dot(row.data(), vectors + (1 + d) * length_, length_) -
-                                offsets_[e * count_ + d];
-            const float share = std::clamp(along / length2, -1.0F, 1.0F);
-            square -= share * (2.0F * along - share * length2);
+    for (std::size_t e = 0; e < result.size(); ++e) {
+        const float* mean = spread_->means.data() + e * length_;
+        float square = row_square + mean_squares_[e] - 2.0F * dot(row.data(), mean, length_);
+        for (std::size_t k = e * count_; k < (e + 1) * count_; ++k) {
+            if (!(squares_[k] > 0.0F)) continue;
+            const std::int8_t* direction = spread_->directions.data() + k * length_;
+            const float along =
+                spread_->scales[k] * dot_bytes(row.data(), direction, length_) - offsets_[k];
+            const float share = std::clamp(along / squares_[k], -1.0F, 1.0F);
+            square -= share * (2.0F * along - share * squares_[k]);
         }
         result[e] = std::sqrt(std::max(0.0F, square));
     }

@@ -40,7 +40,7 @@ struct Spread {
 void append_spread(std::span<const float> rows, std::size_t length, std::size_t count,
                    Spread& spread);
 
-/// Spreads made ready to be searched.
+/// Spreads made ready to be searched; they must outlive it.
 class SpreadIndex {
   public:
     SpreadIndex() = default;
@@ -52,9 +52,10 @@ class SpreadIndex {
   private:
     std::size_t length_ = 0;
     std::size_t count_ = 0;       // of directions
-    std::vector<float> vectors_;  // entries x (mean, directions) x length
-    std::vector<float> squares_;  // entries x: |mean|^2, then |direction|^2 of each
-    std::vector<float> offsets_;  // entries x directions: mean . direction
+    const Spread* spread_ = nullptr;   // its directions stay bytes: less memory to walk through
+    std::vector<float> mean_squares_;  // of each entry
+    std::vector<float> squares_;       // entries x count: of the scaled directions
+    std::vector<float> offsets_;       // entries x count: mean . scaled direction
 };
 
 }  // namespace ostraka
