@@ -235,10 +235,11 @@ void add_build(CLI::App& app) {
         ->check(CLI::IsMember({"surface", "icp", "none"}))
         ->capture_default_str();
     command
-        ->add_option("--spread", settings.selection.spread,
-                     "principal directions in which what an entry stands for varies, which it is "
-                     "compared with; 0 builds in half the time and recognizes by keypoints as well, "
-                     "by global descriptors much less")
+        ->add_option(
+            "--spread", settings.selection.spread,
+            "principal directions in which what an entry stands for varies, which it is "
+            "compared with; 0 builds in half the time and recognizes by keypoints as well, "
+            "by global descriptors much less")
         ->check(CLI::Range(0, kMostSpreadDirections))
         ->capture_default_str();
     command->add_option("--seed", settings.seed, "seed of every random step")

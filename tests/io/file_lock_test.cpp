@@ -48,7 +48,8 @@ TEST(FileLock, ARemovedFileIsNobodys) {
     const FileLock first(folder / "a");
     fs::remove(folder / "a");
     const FileLock second(folder / "a");
-    EXPECT_EQ(problem(folder / "a"), (folder / "a").string() + ": another process is writing to it");
+    EXPECT_EQ(problem(folder / "a"),
+              (folder / "a").string() + ": another process is writing to it");
 }
 
 TEST(FileLock, SaysWhyAFileCantBeOpened) {

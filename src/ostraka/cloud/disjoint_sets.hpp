@@ -27,7 +27,8 @@ class DisjointSets {
         b = find(b);
         parent_[std::max(a, b)] = std::min(a, b);
     }
-    /// Makes every item's parent its root: parents have smaller numbers, so one ascending pass does.
+    /// Makes every item's parent its root: parents have smaller numbers, so one ascending pass
+    /// does.
     void flatten() {
         for (std::uint32_t& parent : parent_) parent = parent_[parent];
     }

@@ -8,8 +8,8 @@ namespace {
 // The points of all levels in the order in which they join, and where each level begins.
 struct Joining {
     std::vector<std::uint32_t> order;
-    std::vector<std::uint32_t> place;   // of each point in `order`; kNoIndex: never joins
-    std::vector<std::size_t> starts;    // levels + 1
+    std::vector<std::uint32_t> place;  // of each point in `order`; kNoIndex: never joins
+    std::vector<std::size_t> starts;   // levels + 1
 };
 
 Joining joining_order(std::span<const std::uint8_t> level, std::size_t levels) {

@@ -30,16 +30,15 @@ FileLock::FileLock(const std::filesystem::path& path) {
     for (;;) {
         descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kNewFile);
         if (descriptor_ < 0) {
-            throw FileError(path,
-                            "can't be written: " + std::generic_category().message(errno));
+            throw FileError(path, "can't be written: " + std::generic_category().message(errno));
         }
         if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
             const int error = errno;
             ::close(descriptor_);
-            throw FileError(path, error == EWOULDBLOCK
-                                      ? "another process is writing to it"
-                                      : "can't be locked: " +
-                                            std::generic_category().message(error));
+            throw FileError(path,
+                            error == EWOULDBLOCK
+                                ? "another process is writing to it"
+                                : "can't be locked: " + std::generic_category().message(error));
         }
         if (still_named(descriptor_, path)) return;
         ::close(descriptor_);

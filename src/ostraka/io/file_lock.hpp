@@ -6,8 +6,8 @@
 
 namespace ostraka {
 
-/// Holds a file, made empty if it isn't there, from construction to destruction. Only other FileLocks
-/// are kept out. The holder may remove the file: whoever comes next makes a new one.
+/// Holds a file, made empty if it isn't there, from construction to destruction. Only other
+/// FileLocks are kept out. The holder may remove the file: whoever comes next makes a new one.
 class FileLock {
   public:
     /// Doesn't wait. @throws FileError if another holds it or it can't be opened for writing.

@@ -44,8 +44,7 @@ LibrarySettings complete_settings(LibrarySettings settings) {
         throw InvalidInput("budget must be at least 1");
     }
     if (settings.selection.spread < 0 || settings.selection.spread > kMostSpreadDirections) {
-        throw InvalidInput(
-            fmt::format("spread must be 0 to {} directions", kMostSpreadDirections));
+        throw InvalidInput(fmt::format("spread must be 0 to {} directions", kMostSpreadDirections));
     }
     for (const double fraction : settings.cuts.fractions) {
         if (!(fraction > 0.0 && fraction < 1.0)) {

@@ -45,8 +45,8 @@ __attribute__((target("avx512vpopcntdq,avx512vl"))) void count_by_vectors(
 
 using Counter = decltype(&count_plainly);
 Counter best_counter() {
-    const bool vectors = __builtin_cpu_supports("avx512vpopcntdq") != 0 &&
-                         __builtin_cpu_supports("avx512vl") != 0;
+    const bool vectors =
+        __builtin_cpu_supports("avx512vpopcntdq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
     if (vectors) return count_by_vectors;
     return __builtin_cpu_supports("popcnt") != 0 ? count_by_words : count_plainly;
 }

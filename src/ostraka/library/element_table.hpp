@@ -19,8 +19,8 @@ class ElementTable {
     std::size_t size() const { return counts_.size(); }
     /// Elements in each set.
     std::span<const int> counts() const { return counts_; }
-    /// Elements that `set` shares with each, into `common` (replaced). Integers, so the same numbers
-    /// whatever the machine's instructions are.
+    /// Elements that `set` shares with each, into `common` (replaced). Integers, so the same
+    /// numbers whatever the machine's instructions are.
     void count_common(const ElementSet& set, std::vector<int>& common) const;
 
   private:

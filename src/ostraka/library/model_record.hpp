@@ -23,8 +23,8 @@ ModelLibrary join_records(const LibrarySettings& settings, std::vector<ModelReco
 /// The inverse, in the library's order.
 std::vector<ModelRecord> split_library(ModelLibrary library);
 
-/// At most `budget` entries of each model, evenly taken (thin_out()): what building with this budget
-/// gives where Redundancy is `icp` or `none`, except for the models' counts.
+/// At most `budget` entries of each model, evenly taken (thin_out()): what building with this
+/// budget gives where Redundancy is `icp` or `none`, except for the models' counts.
 ModelLibrary thin_library(const ModelLibrary& library, int budget);
 
 }  // namespace ostraka

@@ -79,7 +79,8 @@ void append_spread(std::span<const float> rows, std::size_t length, std::size_t 
                    Spread& spread) {
     using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const auto row_count = static_cast<Eigen::Index>(rows.size() / length);
-    const Eigen::Map<const RowMajor> matrix(rows.data(), row_count, static_cast<Eigen::Index>(length));
+    const Eigen::Map<const RowMajor> matrix(rows.data(), row_count,
+                                            static_cast<Eigen::Index>(length));
     Eigen::MatrixXd centered = matrix.cast<double>();
     const Eigen::RowVectorXd mean = centered.colwise().mean();
     centered.rowwise() -= mean;

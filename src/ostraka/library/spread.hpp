@@ -51,7 +51,7 @@ class SpreadIndex {
 
   private:
     std::size_t length_ = 0;
-    std::size_t count_ = 0;       // of directions
+    std::size_t count_ = 0;            // of directions
     const Spread* spread_ = nullptr;   // its directions stay bytes: less memory to walk through
     std::vector<float> mean_squares_;  // of each entry
     std::vector<float> squares_;       // entries x count: of the scaled directions
