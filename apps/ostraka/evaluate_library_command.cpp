@@ -10,7 +10,6 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "ostraka/base/stopwatch.hpp"
-#include "ostraka/cloud/resample.hpp"
 #include "ostraka/evaluation/segments.hpp"
 #include "ostraka/library/build.hpp"
 #include "ostraka/library/library_file.hpp"
@@ -78,19 +77,16 @@ std::uintmax_t file_size_of(const ModelLibrary& library) {
 
 std::vector<LabeledSegment> segments_of(const std::vector<ModelSource>& models,
                                         const LibraryOptions& options) {
-    SceneModels scene_models;
     std::vector<const ModelSource*> by_name;
     for (const ModelSource& model : models) by_name.push_back(&model);
     std::sort(by_name.begin(), by_name.end(),
               [](const auto* a, const auto* b) { return a->name < b->name; });
-    for (const ModelSource* model : by_name) {
-        scene_models.meshes.push_back(model->mesh);
-        scene_models.shapes.push_back(measure(model->mesh));
-    }
+    std::vector<TriangleMesh> meshes;
+    for (const ModelSource* model : by_name) meshes.push_back(model->mesh);
     SegmentSettings settings = options.segments;
     settings.views.sensor = {.noise = options.noise * options.settings.sampling,
                              .seed = settings.views.seed};
-    return simulate_segments(scene_models, settings, progress_bar());
+    return simulate_segments(scene_models(std::move(meshes)), settings, progress_bar());
 }
 
 void run_library(LibraryOptions& options) {

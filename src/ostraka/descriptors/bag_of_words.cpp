@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/base/lane_sums.hpp"
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/base/random.hpp"
 #include "ostraka/base/vector_clones.hpp"
@@ -17,23 +17,13 @@
 namespace ostraka {
 namespace {
 
-constexpr std::size_t kLanes = 16;       // partial sums of a product, so that additions overlap
 constexpr std::size_t kGrain = 64;       // rows that a thread takes at a time
 constexpr double kSameRow = 1e-6;        // squared distance below which two rooted rows are one
 constexpr std::uint32_t kUnknown = ~0U;  // no word yet
 
-// The cosine of the angle between rows of length 1; partial sums in a fixed order.
+// The cosine of the angle between rows of length 1.
 OSTRAKA_VECTOR_CLONES float dot(const float* a, const float* b, std::size_t length) {
-    std::array<float, kLanes> sums{};
-    std::size_t i = 0;
-    for (; i + kLanes <= length; i += kLanes) {
-        for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += a[i + lane] * b[i + lane];
-    }
-    for (; i < length; ++i) sums[i % kLanes] += a[i] * b[i];
-    for (std::size_t half = kLanes / 2; half > 0; half /= 2) {
-        for (std::size_t lane = 0; lane < half; ++lane) sums[lane] += sums[lane + half];
-    }
-    return sums[0];
+    return sum_in_lanes<16>(a, b, length, [](float x, float y) { return x * y; });
 }
 
 void check_rows(std::span<const float> rows, std::size_t length) {

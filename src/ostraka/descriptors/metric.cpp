@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "ostraka/base/lane_sums.hpp"
 #include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
@@ -16,31 +17,16 @@ float magnitude(float value) {
     return value < 0.0F ? -value : value;
 }
 
-// Eight partial sums in a fixed order, so that the compiler may vectorize and the bits stay the
-// same.
-template <class Term>
-__attribute__((always_inline)) inline float sum_of(const float* a, const float* b,
-                                                   std::size_t length, const Term& term) {
-    std::array<float, 8> sums{};
-    std::size_t i = 0;
-    for (; i + 8 <= length; i += 8) {
-        for (std::size_t lane = 0; lane < 8; ++lane) sums[lane] += term(a[i + lane], b[i + lane]);
-    }
-    for (; i < length; ++i) sums[i % 8] += term(a[i], b[i]);
-    return ((sums[0] + sums[4]) + (sums[2] + sums[6])) +
-           ((sums[1] + sums[5]) + (sums[3] + sums[7]));
-}
-
 OSTRAKA_VECTOR_CLONES float l1(const float* a, const float* b, std::size_t length) {
-    return sum_of(a, b, length, [](float x, float y) { return magnitude(x - y); });
+    return sum_in_lanes<8>(a, b, length, [](float x, float y) { return magnitude(x - y); });
 }
 
 OSTRAKA_VECTOR_CLONES float squared_l2(const float* a, const float* b, std::size_t length) {
-    return sum_of(a, b, length, [](float x, float y) { return (x - y) * (x - y); });
+    return sum_in_lanes<8>(a, b, length, [](float x, float y) { return (x - y) * (x - y); });
 }
 
 OSTRAKA_VECTOR_CLONES float chi_square(const float* a, const float* b, std::size_t length) {
-    return sum_of(a, b, length, [](float x, float y) {
+    return sum_in_lanes<8>(a, b, length, [](float x, float y) {
         return (x - y) * (x - y) / (magnitude(x) + magnitude(y) + kTiny);
     });
 }

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/base/lane_sums.hpp"
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/base/vector_clones.hpp"
 
@@ -119,24 +120,13 @@ void in_range(const std::uint8_t* rows, std::size_t length, const std::uint8_t* 
 }
 #endif
 
-// Eight partial sums in a fixed order, so that the compiler may vectorize and the bits stay the
-// same. @param query  in steps of the scale, from its low end.
+// @param query  in steps of the scale, from its low end.
 OSTRAKA_VECTOR_CLONES
 float squared_steps(const std::uint8_t* row, const float* query, std::size_t length) {
-    std::array<float, 8> sums{};
-    std::size_t i = 0;
-    for (; i + 8 <= length; i += 8) {
-        for (std::size_t lane = 0; lane < 8; ++lane) {
-            const float difference = query[i + lane] - static_cast<float>(row[i + lane]);
-            sums[lane] += difference * difference;
-        }
-    }
-    for (; i < length; ++i) {
-        const float difference = query[i] - static_cast<float>(row[i]);
-        sums[i % 8] += difference * difference;
-    }
-    return ((sums[0] + sums[4]) + (sums[2] + sums[6])) +
-           ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+    return sum_in_lanes<8>(query, row, length, [](float value, std::uint8_t byte) {
+        const float difference = value - static_cast<float>(byte);
+        return difference * difference;
+    });
 }
 
 // The k nearest of the rows from `first` on, in order.

@@ -1,46 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/library/element_table.hpp"
 
-#include <bit>
-
 namespace ostraka {
 namespace {
 
 using Block = ElementTable::Block;
 constexpr std::size_t kLanes = ElementTable::kLanes;
 
-__attribute__((always_inline)) inline void count_in_block(const ElementSet& set, const Block& block,
-                                                          int* common) {
-    std::array<std::uint64_t, kLanes> counts{};
-    for (std::size_t w = 0; w < set.size(); ++w) {
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            const std::uint64_t both = set[w] & block[w * kLanes + lane];
-            counts[lane] += static_cast<std::uint64_t>(__builtin_popcountll(both));
+__attribute__((always_inline)) inline void count_blocks(const ElementSet& set,
+                                                        std::span<const Block> blocks,
+                                                        int* common) {
+    for (const Block& block : blocks) {
+        std::array<std::uint64_t, kLanes> counts{};
+        for (std::size_t w = 0; w < set.size(); ++w) {
+            for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                const std::uint64_t both = set[w] & block[w * kLanes + lane];
+                counts[lane] += static_cast<std::uint64_t>(__builtin_popcountll(both));
+            }
         }
+        for (const std::uint64_t count : counts) *common++ = static_cast<int>(count);
     }
-    for (std::size_t lane = 0; lane < kLanes; ++lane) common[lane] = static_cast<int>(counts[lane]);
 }
 
 void count_plainly(const ElementSet& set, std::span<const Block> blocks, int* common) {
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-        count_in_block(set, blocks[b], common + b * kLanes);
-    }
+    count_blocks(set, blocks, common);
 }
 
 // Compilers' own dispatch knows counting by vectors only as a feature of named processors.
 #if defined(__GNUC__) && defined(__x86_64__)
 __attribute__((target("popcnt"))) void count_by_words(const ElementSet& set,
                                                       std::span<const Block> blocks, int* common) {
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-        count_in_block(set, blocks[b], common + b * kLanes);
-    }
+    count_blocks(set, blocks, common);
 }
 
 __attribute__((target("avx512vpopcntdq,avx512vl"))) void count_by_vectors(
     const ElementSet& set, std::span<const Block> blocks, int* common) {
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-        count_in_block(set, blocks[b], common + b * kLanes);
-    }
+    count_blocks(set, blocks, common);
 }
 
 using Counter = decltype(&count_plainly);

@@ -186,12 +186,9 @@ LibraryCheck verify_library(const std::filesystem::path& path, const Progress& p
         }
         check_models(store, check, progress);
         check.sha256 = content_digest(store);
-        if (store.has_bags() && check.problems.empty()) {
+        if ((store.has_bags() || store.has_graph()) && check.problems.empty()) {
             ModelLibrary library = load_store(store);
             store.load_bags(library);
-        }
-        if (store.has_graph() && check.problems.empty()) {
-            ModelLibrary library = load_store(store);
             store.load_graph(library);
         }
     } catch (const FormatError& error) {

@@ -96,7 +96,8 @@ void append_floats(std::vector<float>& values, const Row& row, std::size_t colum
     }
 }
 
-Bytes bytes_of(std::span<const float> values) {
+template <class T>
+Bytes bytes_of(std::span<T> values) {
     const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
     return {bytes, bytes + values.size_bytes()};
 }
@@ -317,10 +318,9 @@ void LibraryStore::put_graph(const NeighborGraph& graph) {
         "CREATE TABLE IF NOT EXISTS graph(name TEXT PRIMARY KEY, models_sha256 TEXT NOT NULL,"
         " sha256 TEXT NOT NULL, degree INTEGER NOT NULL, start INTEGER NOT NULL,"
         " links BLOB NOT NULL); DELETE FROM graph;");
-    const auto* bytes = reinterpret_cast<const unsigned char*>(graph.links.data());
     const Row content = {std::int64_t{graph.degree}, std::int64_t{graph.start},
-                         Bytes(bytes, bytes + graph.links.size() * sizeof(std::uint32_t))};
-    Statement insert(*database_, "INSERT INTO graph VALUES(?,?,?,?,?,?)");
+                         bytes_of(std::span(graph.links))};
+    Statement insert(*database_, insertion("graph", 6).c_str());
     insert_row(insert,
                {std::string("keypoints"), models_digest(), digest_of(std::vector<Row>{content})},
                content);

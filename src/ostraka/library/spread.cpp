@@ -4,9 +4,10 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 
+#include "ostraka/base/lane_sums.hpp"
 #include "ostraka/base/vector_clones.hpp"
 
 namespace ostraka {
@@ -15,32 +16,13 @@ namespace {
 constexpr double kReach = 2.0;    // of a patch, in standard deviations of what it was made of
 constexpr float kSteps = 127.0F;  // of a direction's largest coordinate
 
-constexpr std::size_t kLanes = 16;  // of a scalar product: two vectors, so that sums needn't wait
-
-// Partial sums in a fixed order: the same bits whatever vectors the machine has.
-template <class T>
-__attribute__((always_inline)) inline float dot_with(const float* a, const T* b,
-                                                     std::size_t length) {
-    std::array<float, kLanes> sums{};
-    std::size_t i = 0;
-    for (; i + kLanes <= length; i += kLanes) {
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            sums[lane] += a[i + lane] * static_cast<float>(b[i + lane]);
-        }
-    }
-    for (; i < length; ++i) sums[i % kLanes] += a[i] * static_cast<float>(b[i]);
-    for (std::size_t half = kLanes / 2; half > 0; half /= 2) {
-        for (std::size_t lane = 0; lane < half; ++lane) sums[lane] += sums[lane + half];
-    }
-    return sums[0];
-}
-
 OSTRAKA_VECTOR_CLONES float dot(const float* a, const float* b, std::size_t length) {
-    return dot_with(a, b, length);
+    return sum_in_lanes<16>(a, b, length, [](float x, float y) { return x * y; });
 }
 
 OSTRAKA_VECTOR_CLONES float dot_bytes(const float* a, const std::int8_t* b, std::size_t length) {
-    return dot_with(a, b, length);
+    return sum_in_lanes<16>(a, b, length,
+                            [](float x, std::int8_t y) { return x * static_cast<float>(y); });
 }
 
 template <class T>
@@ -103,15 +85,14 @@ void append_spread(std::span<const float> rows, std::size_t length, std::size_t 
 SpreadIndex::SpreadIndex(const Spread& spread, std::size_t length)
     : length_(length), count_(spread.count(length)), spread_(&spread) {
     const std::size_t entries = spread.means.size() / length;
-    std::vector<float> direction(length);
     for (std::size_t e = 0; e < entries; ++e) {
         const float* mean = spread_->means.data() + e * length;
         mean_squares_.push_back(dot(mean, mean, length));
         for (std::size_t d = 0; d < count_; ++d) {
             const std::int8_t* bytes = spread_->directions.data() + (e * count_ + d) * length;
-            std::copy(bytes, bytes + length, direction.begin());
             const float scale = spread_->scales[e * count_ + d];
-            squares_.push_back(scale * scale * dot_bytes(direction.data(), bytes, length));
+            const int square = std::inner_product(bytes, bytes + length, bytes, 0);
+            squares_.push_back(scale * scale * static_cast<float>(square));
             offsets_.push_back(scale * dot_bytes(mean, bytes, length));
         }
     }
