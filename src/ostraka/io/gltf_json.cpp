@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/io/json_reader.hpp"
 #include "ostraka/io/text.hpp"
 
 namespace ostraka {
@@ -18,24 +19,10 @@ constexpr std::uint64_t kLargest = std::uint64_t{1} << 40;
     throw FormatError(path, where, problem);
 }
 
-Json parse_json(std::span<const char> text, const Path& path) {
-    const auto check_depth = [&](int depth, Json::parse_event_t, Json&) {
-        if (depth > kDeepestGltf) {
-            fail(path, "JSON", fmt::format("nested deeper than {}", kDeepestGltf));
-        }
-        return true;
-    };
-    try {
-        return Json::parse(text.begin(), text.end(), check_depth);
-    } catch (const Json::parse_error& error) {
-        fail(path, fmt::format("byte {}", error.byte), "is not valid JSON");
-    }
-}
-
 }  // namespace
 
 GltfJson::GltfJson(std::span<const char> text, const std::filesystem::path& path)
-    : path_(path), root_(parse_json(text, path)) {
+    : path_(path), root_(parse_json(text, path, kDeepestGltf)) {
     check_asset();
 }
 

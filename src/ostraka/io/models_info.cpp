@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <nlohmann/json.hpp>
+#include <array>
 #include <set>
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/io/atomic_file.hpp"
-#include "ostraka/io/bytes.hpp"
+#include "ostraka/io/json_reader.hpp"
+#include "ostraka/io/rigid_matrix.hpp"
 #include "ostraka/mesh/shape.hpp"
 #include "ostraka/mesh/symmetry_poses.hpp"
 
@@ -22,109 +21,32 @@ using Json = nlohmann::json;
 using OrderedJson = nlohmann::ordered_json;  // slow with many keys: for writing only
 using Path = std::filesystem::path;
 
-constexpr int kDeepest = 16;  // of nested values; the format needs 4
 constexpr std::size_t kMostModels = 1'000'000;
 constexpr std::size_t kMostTurns = 10'000;
 constexpr std::size_t kMostAxes = 16;
-constexpr double kLargest = 1e9;       // mm
-constexpr double kOrthonormal = 0.02;  // published matrices are rounded or measured
 constexpr std::array<char, 3> kAxisNames = {'x', 'y', 'z'};
 
-// One model of a file, for messages.
-struct Place {
-    const Path& path;
-    std::string model;
-
-    [[noreturn]] void fail(const std::string& problem) const {
-        throw FormatError(path, model, problem);
-    }
-};
-
-Json parse(const Path& path) {
-    const FileBytes bytes = read_file(path);
-    const auto check_depth = [&](int depth, Json::parse_event_t, Json&) {
-        if (depth > kDeepest) {
-            throw FormatError(path, "JSON", fmt::format("nested deeper than {}", kDeepest));
-        }
-        return true;
-    };
-    try {
-        return Json::parse(bytes.span().begin(), bytes.span().end(), check_depth);
-    } catch (const Json::parse_error& error) {
-        throw FormatError(path, fmt::format("byte {}", error.byte), "is not valid JSON");
-    } catch (const Json::out_of_range&) {
-        throw FormatError(path, "JSON", "holds a number that is too large");
-    }
+Vec3d vector_of(const Json& object, const char* key, const JsonPlace& place) {
+    const std::vector<double> numbers = json_numbers_of(object, key, 3, place);
+    return {numbers[0], numbers[1], numbers[2]};
 }
 
-double number(const Json& value, const std::string& what, const Place& place) {
-    if (!value.is_number()) place.fail(what + " is not a number");
-    const auto result = value.get<double>();
-    if (!(std::abs(result) <= kLargest)) place.fail(what + " is out of range");
-    return result;
-}
-
-double number_of(const Json& model, const std::string& key, const Place& place) {
-    const auto found = model.find(key);
-    if (found == model.end()) place.fail(fmt::format("has no \"{}\"", key));
-    return number(*found, fmt::format("\"{}\"", key), place);
-}
-
-Vec3d vector_of(const Json& object, const char* key, const Place& place) {
-    const auto found = object.find(key);
-    if (found == object.end() || !found->is_array() || found->size() != 3) {
-        place.fail(fmt::format("a continuous symmetry needs an \"{}\" of 3 numbers", key));
-    }
-    Vec3d vector;
-    for (int k = 0; k < 3; ++k) {
-        vector[k] =
-            number((*found)[static_cast<std::size_t>(k)], fmt::format("\"{}\"", key), place);
-    }
-    return vector;
-}
-
-// The list under `key`, empty where there is none.
-const Json& list_of(const Json& model, const char* key, std::size_t most, const Place& place) {
-    static const Json empty = Json::array();
-    const auto found = model.find(key);
-    if (found == model.end()) return empty;
-    if (!found->is_array()) place.fail(fmt::format("\"{}\" is not a list", key));
-    if (found->size() > most) {
-        place.fail(fmt::format("\"{}\" has {} items, more than {}", key, found->size(), most));
-    }
-    return *found;
-}
-
-Pose turn_from(const Json& numbers, const Place& place) {
+Pose turn_from(const Json& value, const JsonPlace& place) {
     const std::string what = "a discrete symmetry";
-    if (!numbers.is_array() || numbers.size() != 16) place.fail(what + " is not 16 numbers");
-    Mat4d matrix;
-    for (int k = 0; k < 16; ++k) {
-        matrix(k / 4, k % 4) = number(numbers[static_cast<std::size_t>(k)], what, place);
-    }
-    if (matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
-        place.fail(what + " has a last row other than 0 0 0 1");
-    }
-    const Mat3d rotation = matrix.topLeftCorner<3, 3>();
-    const Mat3d off = rotation * rotation.transpose() - Mat3d::Identity();
-    if (off.cwiseAbs().maxCoeff() > kOrthonormal || rotation.determinant() < 0.0) {
-        place.fail(what + " is not a rotation");
-    }
-    Pose turn = Pose::Identity();
-    turn.linear() = Eigen::Quaterniond(Eigen::Matrix3d(rotation)).normalized().toRotationMatrix();
-    turn.translation() = matrix.topRightCorner<3, 1>();
-    return turn;
+    const RigidMatrix matrix = rigid_from(json_numbers(value, 16, what, place));
+    if (!matrix.problem.empty()) place.fail(fmt::format("{} {}", what, matrix.problem));
+    return matrix.pose;
 }
 
-Symmetry symmetry_from(const Json& model, const Place& place) {
+Symmetry symmetry_from(const Json& model, const JsonPlace& place) {
     Symmetry symmetry;
-    for (const Json& numbers : list_of(model, "symmetries_discrete", kMostTurns, place)) {
+    for (const Json& numbers :
+         json_list_or_empty(model, "symmetries_discrete", kMostTurns, place)) {
         const Pose turn = turn_from(numbers, place);
         // Some files list the identity, too.
         if (!turn.matrix().isIdentity(1e-6)) symmetry.turns.push_back(turn);
     }
-    for (const Json& item : list_of(model, "symmetries_continuous", kMostAxes, place)) {
-        if (!item.is_object()) place.fail("a continuous symmetry is not an object");
+    for (const Json& item : json_list_or_empty(model, "symmetries_continuous", kMostAxes, place)) {
         const Vec3d direction = vector_of(item, "axis", place);
         if (!(direction.norm() > 1e-6)) place.fail("\"axis\" has no direction");
         symmetry.axes.push_back({direction.normalized(), vector_of(item, "offset", place)});
@@ -134,23 +56,18 @@ Symmetry symmetry_from(const Json& model, const Place& place) {
 }
 
 ModelInfo model_from(const std::string& key, const Json& model, const Path& path) {
-    const Place place{path, fmt::format("model \"{}\"", key.substr(0, 40))};
+    const JsonPlace place{path, fmt::format("model \"{}\"", key.substr(0, 40))};
     ModelInfo info;
-    const auto [stop, problem] = std::from_chars(key.data(), key.data() + key.size(), info.number);
-    if (problem != std::errc() || stop != key.data() + key.size() || info.number < 1) {
-        place.fail("is not named by a number from 1");
-    }
+    info.number = whole_number(key).value_or(0);
+    if (info.number < 1) place.fail("is not named by a number from 1");
     if (!model.is_object()) place.fail("is not an object");
-    if (const auto name = model.find("name"); name != model.end()) {
-        if (!name->is_string()) place.fail("\"name\" is not a text");
-        info.name = name->get<std::string>();
-    }
-    info.diameter = number_of(model, "diameter", place);
+    info.name = json_text_or_empty(model, "name", place);
+    info.diameter = json_number_of(model, "diameter", place);
     if (!(info.diameter > 0.0)) place.fail("\"diameter\" is not positive");
     for (int k = 0; k < 3; ++k) {
         const char axis = kAxisNames[static_cast<std::size_t>(k)];
-        info.low[k] = number_of(model, fmt::format("min_{}", axis), place);
-        info.size[k] = number_of(model, fmt::format("size_{}", axis), place);
+        info.low[k] = json_number_of(model, fmt::format("min_{}", axis), place);
+        info.size[k] = json_number_of(model, fmt::format("size_{}", axis), place);
         if (info.size[k] < 0.0) place.fail(fmt::format("\"size_{}\" is negative", axis));
     }
     info.symmetry = symmetry_from(model, place);
@@ -205,8 +122,7 @@ ModelInfo model_info(int number, const std::string& name, const TriangleMesh& me
 }
 
 std::vector<ModelInfo> read_models_info(const Path& path) {
-    const Json root = parse(path);
-    if (!root.is_object()) throw FormatError(path, "JSON", "is not an object of models");
+    const Json root = read_json_object(path);
     if (root.size() > kMostModels) throw FormatError(path, "JSON", "has too many models");
     std::vector<ModelInfo> models;
     for (const auto& [key, model] : root.items()) models.push_back(model_from(key, model, path));
