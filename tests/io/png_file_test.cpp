@@ -31,6 +31,48 @@ TEST(PngFile, WritesColorImagesThatAreNoDepth) {
     EXPECT_THROW(read_depth_png16(folder / "c.png"), FormatError);
 }
 
+TEST(PngFile, WritesMasks) {
+    const TestFolder folder;
+    const std::vector<std::uint8_t> mask = {0, 255, 255, 0, 0, 255};
+    write_gray_png8(folder / "m.png", 2, 3, mask);
+    const std::string bytes = load_text(folder / "m.png");
+    EXPECT_EQ(bytes, encode_gray_png8(2, 3, mask));
+    EXPECT_EQ(bytes.substr(16, 10), std::string("\0\0\0\2\0\0\0\3\x08\0", 10));
+    EXPECT_THROW(read_depth_png16(folder / "m.png"), FormatError);
+    EXPECT_THROW(encode_gray_png8(3, 3, mask), InvalidInput);
+    EXPECT_THROW(write_gray_png8(folder / "none" / "m.png", 2, 3, mask), FileError);
+}
+
+TEST(PngFile, LargeDepthImagesSurviveAndArePackedWell) {
+    std::vector<std::uint16_t> values(640 * 480);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = static_cast<std::uint16_t>(8000 + i % 640 + (i * 2654435761U >> 20U) % 8);
+    }
+    const TestFolder folder;
+    write_depth_png16(folder / "d.png", 640, 480, values);
+    EXPECT_EQ(read_depth_png16(folder / "d.png").values, values);
+    EXPECT_LT(std::filesystem::file_size(folder / "d.png"), values.size());  // half
+}
+
+TEST(PngFile, TellsTheSizeFromTheHeader) {
+    const TestFolder folder;
+    write_depth_png16(folder / "d.png", 3, 2, kDepths);
+    EXPECT_EQ(read_png_size(folder / "d.png").width, 3);
+    EXPECT_EQ(read_png_size(folder / "d.png").height, 2);
+    const std::string valid = load_text(folder / "d.png");
+    for (std::size_t length = 0; length < 24; ++length) {
+        save(folder / "t.png", valid.substr(0, length));
+        EXPECT_THROW(read_png_size(folder / "t.png"), FormatError) << length;
+    }
+    for (const char* width : {"\0\0\0\0", "\xff\0\0\0"}) {
+        std::string damaged = valid;
+        damaged.replace(16, 4, std::string(width, 4));
+        save(folder / "t.png", damaged);
+        EXPECT_THROW(read_png_size(folder / "t.png"), FormatError);
+    }
+    EXPECT_THROW(read_png_size(folder / "none.png"), FileError);
+}
+
 TEST(PngFile, RejectsSizesThatDoNotFit) {
     const TestFolder folder;
     EXPECT_THROW(write_depth_png16(folder / "d.png", 3, 3, kDepths), InvalidInput);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
 #include <system_error>
 
 #include "ostraka/base/error.hpp"
@@ -32,7 +33,7 @@ struct Descriptor {
 
 }  // namespace
 
-FileBytes read_file(const std::filesystem::path& path) {
+FileBytes read_file(const std::filesystem::path& path, std::size_t most) {
     // Not blocking: opening a pipe without a writer must not hang before its kind is known.
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
     struct stat info = {};
@@ -43,7 +44,7 @@ FileBytes read_file(const std::filesystem::path& path) {
         throw FileError(path, S_ISDIR(info.st_mode) ? "is a folder" : "is not a regular file");
     }
     FileBytes bytes;
-    const std::size_t size = static_cast<std::size_t>(info.st_size);
+    const std::size_t size = std::min(static_cast<std::size_t>(info.st_size), most);
     bytes.data = std::make_unique_for_overwrite<char[]>(size);
     while (bytes.size < size) {
         const ssize_t count = ::read(file.value, bytes.data.get() + bytes.size,
@@ -60,6 +61,13 @@ FileBytes read_file(const std::filesystem::path& path) {
         bytes.size += static_cast<std::size_t>(count);
     }
     return bytes;
+}
+
+void write_plain_file(const std::filesystem::path& path, std::string_view bytes) {
+    std::ofstream file(path, std::ios::binary | std::ios::trunc);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file) throw FileError(path, "can't be written");
 }
 
 std::string lower_extension(const std::filesystem::path& path) {

@@ -8,9 +8,11 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "ostraka/mesh/triangle_mesh.hpp"
 
@@ -23,8 +25,14 @@ struct FileBytes {
     std::span<const char> span() const { return {data.get(), size}; }
 };
 
+/// @param most  bytes to read, from the start.
 /// @throws FileError if `path` is missing, not a regular file or can't be read.
-FileBytes read_file(const std::filesystem::path& path);
+FileBytes read_file(const std::filesystem::path& path,
+                    std::size_t most = std::numeric_limits<std::size_t>::max());
+
+/// Writes a file that is one of many: neither atomic nor flushed to the disk, for what counts only
+/// once the file that lists it is there. @throws FileError.
+void write_plain_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// The extension in lower case, with its dot.
 std::string lower_extension(const std::filesystem::path& path);

@@ -10,6 +10,7 @@
 #include <bit>
 #include <csetjmp>
 #include <cstring>
+#include <string_view>
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/io/atomic_file.hpp"
@@ -20,6 +21,7 @@ namespace {
 
 // zlib makes at most 1032 bytes of one; a header that promises more is damaged.
 constexpr std::uint64_t kMostExpansion = 1100;
+constexpr std::uint32_t kMostPixels = 1'000'000;  // in a row or column, as libpng has it
 
 // What libpng's callbacks work on.
 struct Stream {
@@ -98,10 +100,24 @@ struct Shape {
     int color_type = 0;
 };
 
-bool write_rows(const Writer& writer, const Shape& shape, png_bytepp rows) {
+// How rows are packed; a negative number leaves the choice to libpng.
+struct Packing {
+    int level = -1;  // zlib's, 1 to 9
+    int filter = -1;
+};
+
+// Measured on VGA depth images with and without noise: level 1 of rows of differences takes 4 to 19
+// ms where libpng's own choice takes 16 to 200, for files 3 to 60 % larger; the other filters and
+// strategies are slower or their files larger. Masks are best packed as they are.
+constexpr Packing kFastDepth = {1, PNG_FILTER_SUB};
+constexpr Packing kFastMask = {1, PNG_FILTER_NONE};
+
+bool write_rows(const Writer& writer, const Shape& shape, const Packing& packing, png_bytepp rows) {
     if (setjmp(png_jmpbuf(writer.png)) != 0) {
         return false;
     }
+    if (packing.level >= 0) png_set_compression_level(writer.png, packing.level);
+    if (packing.filter >= 0) png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, packing.filter);
     png_set_IHDR(writer.png, writer.info, shape.width, shape.height, shape.depth, shape.color_type,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(writer.png, writer.info);
@@ -145,44 +161,72 @@ std::vector<png_bytep> row_pointers(png_bytep first, std::size_t stride, std::si
     return rows;
 }
 
-void check_size(const std::filesystem::path& path, int width, int height, std::size_t pixels) {
+Shape checked_shape(int width, int height, int depth, int color_type, std::size_t pixels) {
     if (width <= 0 || height <= 0 ||
         pixels != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
-        throw InvalidInput(fmt::format("{}: image of {} x {} with {} pixels", path.string(), width,
-                                       height, pixels));
+        throw InvalidInput(
+            fmt::format("PNG: image of {} x {} with {} pixels", width, height, pixels));
     }
+    return {static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), depth, color_type};
 }
 
 // libpng's interface lacks const; it doesn't write to the rows of an image it encodes.
-void write(const std::filesystem::path& path, const Shape& shape, const void* pixels,
-           std::size_t pixel_size) {
+std::string encode(const Shape& shape, const Packing& packing, const void* pixels,
+                   std::size_t pixel_size) {
     auto* first = static_cast<png_bytep>(const_cast<void*>(pixels));
     std::vector<png_bytep> rows = row_pointers(first, pixel_size * shape.width, shape.height);
     std::string bytes;
     Stream stream;
     stream.output = &bytes;
     const Writer writer(stream);
-    if (writer.info == nullptr || !write_rows(writer, shape, rows.data())) {
-        throw FileError(path, fmt::format("can't be encoded: {}", stream.problem.data()));
+    if (writer.info == nullptr || !write_rows(writer, shape, packing, rows.data())) {
+        throw InvalidInput(fmt::format("PNG: image of {} x {} can't be encoded: {}", shape.width,
+                                       shape.height, stream.problem.data()));
     }
-    write_file_atomically(path, bytes);
+    return bytes;
 }
 
 }  // namespace
 
 void write_png(const std::filesystem::path& path, const Image& image) {
-    check_size(path, image.width, image.height, image.pixels.size());
-    const Shape shape = {static_cast<png_uint_32>(image.width),
-                         static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB};
-    write(path, shape, image.pixels.data(), sizeof(Color));
+    const Shape shape =
+        checked_shape(image.width, image.height, 8, PNG_COLOR_TYPE_RGB, image.pixels.size());
+    write_file_atomically(path, encode(shape, {}, image.pixels.data(), sizeof(Color)));
+}
+
+std::string encode_depth_png16(int width, int height, std::span<const std::uint16_t> values) {
+    const Shape shape = checked_shape(width, height, 16, PNG_COLOR_TYPE_GRAY, values.size());
+    return encode(shape, kFastDepth, values.data(), sizeof(std::uint16_t));
+}
+
+std::string encode_gray_png8(int width, int height, std::span<const std::uint8_t> values) {
+    const Shape shape = checked_shape(width, height, 8, PNG_COLOR_TYPE_GRAY, values.size());
+    return encode(shape, kFastMask, values.data(), sizeof(std::uint8_t));
 }
 
 void write_depth_png16(const std::filesystem::path& path, int width, int height,
                        std::span<const std::uint16_t> values) {
-    check_size(path, width, height, values.size());
-    const Shape shape = {static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 16,
-                         PNG_COLOR_TYPE_GRAY};
-    write(path, shape, values.data(), sizeof(std::uint16_t));
+    write_file_atomically(path, encode_depth_png16(width, height, values));
+}
+
+void write_gray_png8(const std::filesystem::path& path, int width, int height,
+                     std::span<const std::uint8_t> values) {
+    write_file_atomically(path, encode_gray_png8(width, height, values));
+}
+
+PngSize read_png_size(const std::filesystem::path& path) {
+    constexpr std::string_view kStart("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR", 16);
+    const FileBytes start = read_file(path, kStart.size() + 8);
+    if (start.size < kStart.size() + 8 ||
+        std::string_view(start.data.get(), kStart.size()) != kStart) {
+        throw FormatError(path, "header", "is not a PNG");
+    }
+    const auto width = load<std::uint32_t>(start.data.get() + kStart.size(), std::endian::big);
+    const auto height = load<std::uint32_t>(start.data.get() + kStart.size() + 4, std::endian::big);
+    if (width - 1U >= kMostPixels || height - 1U >= kMostPixels) {
+        throw FormatError(path, "header", fmt::format("is of {} x {} pixels", width, height));
+    }
+    return {static_cast<int>(width), static_cast<int>(height)};
 }
 
 DepthImage16 read_depth_png16(const std::filesystem::path& path) {

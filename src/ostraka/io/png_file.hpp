@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ostraka/base/types.hpp"
@@ -24,6 +25,11 @@ struct DepthImage16 {
         values;  ///< width * height, row-major from the top left; often 0 = none
 };
 
+struct PngSize {
+    int width = 0;   ///< columns
+    int height = 0;  ///< rows
+};
+
 /// Writes an 8-bit RGB PNG. The file appears whole or not at all.
 /// @throws InvalidInput if the sizes don't fit together or are zero, FileError if it can't be
 /// written.
@@ -35,6 +41,17 @@ void write_png(const std::filesystem::path& path, const Image& image);
 /// written.
 void write_depth_png16(const std::filesystem::path& path, int width, int height,
                        std::span<const std::uint16_t> values);
+
+/// Writes an 8-bit grayscale PNG, the usual form of a mask (0 and 255). The rest as above.
+void write_gray_png8(const std::filesystem::path& path, int width, int height,
+                     std::span<const std::uint8_t> values);
+
+/// The files' bytes, for those who write many at once. @throws InvalidInput as above.
+std::string encode_depth_png16(int width, int height, std::span<const std::uint16_t> values);
+std::string encode_gray_png8(int width, int height, std::span<const std::uint8_t> values);
+
+/// The size that a PNG's header states; the rest isn't read. @throws FileError, FormatError.
+PngSize read_png_size(const std::filesystem::path& path);
 
 /// Reads a 16-bit grayscale PNG.
 /// @throws FileError if the file can't be read, FormatError if it is damaged or of another kind.
