@@ -16,12 +16,13 @@ namespace ostraka::app {
 namespace {
 
 SceneModels models_of(const ModelLibrary& library) {
-    SceneModels models;
+    std::vector<TriangleMesh> meshes;
+    std::vector<MeshShape> shapes;
     for (const Model& model : library.models) {
-        models.meshes.push_back(model.mesh);
-        models.shapes.push_back(model.shape);
+        meshes.push_back(model.mesh);
+        shapes.push_back(model.shape);
     }
-    return models;
+    return scene_models(std::move(meshes), std::move(shapes));
 }
 
 struct SegmentOptions {
@@ -47,7 +48,7 @@ void run_segments(SegmentOptions& options) {
         const double resolution = mesh_resolution(library.models.front().surface.points);
         for (const double noise : parse_numbers(options.noise, "--noise")) {
             SegmentSettings settings = options.settings;
-            settings.views.sensor = {.noise = noise * resolution, .seed = settings.views.seed};
+            settings.views.sensor.ranging = {.noise = noise * resolution, .seed = settings.views.seed};
             const auto segments = simulate_segments(models, settings, progress_bar());
             double visible = 0.0;
             for (const LabeledSegment& segment : segments) visible += segment.visible_fraction;
@@ -90,7 +91,7 @@ void run_scenes(SceneOptions& options) {
     const Recognizer recognizer(library);
     const SceneModels models = models_of(library);
     TabletopSettings settings = options.tabletop;
-    settings.sensor = {.noise = options.noise, .seed = settings.seed};
+    settings.sensor.ranging = {.noise = options.noise, .seed = settings.seed};
     RecognitionSettings recognition_settings;
     recognition_settings.min_confidence = options.min_confidence;
     const Progress progress = progress_bar();

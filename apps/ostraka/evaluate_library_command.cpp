@@ -84,7 +84,7 @@ std::vector<LabeledSegment> segments_of(const std::vector<ModelSource>& models,
     std::vector<TriangleMesh> meshes;
     for (const ModelSource* model : by_name) meshes.push_back(model->mesh);
     SegmentSettings settings = options.segments;
-    settings.views.sensor = {.noise = options.noise * options.settings.sampling,
+    settings.views.sensor.ranging = {.noise = options.noise * options.settings.sampling,
                              .seed = settings.views.seed};
     return simulate_segments(scene_models(std::move(meshes)), settings, progress_bar());
 }

@@ -48,13 +48,13 @@ SimulatedScene make_scene(const SceneModels& models, std::uint64_t number,
     if (options.kind == "random-views") {
         RandomViewSettings settings{.seed = options.seed};
         settings.camera = resized(settings.camera, options.width);
-        settings.sensor = {.noise = options.noise, .seed = options.seed};
+        settings.sensor.ranging = {.noise = options.noise, .seed = options.seed};
         return simulate_random_view(models, number, settings);
     }
     TabletopSettings settings{
         .objects = options.objects, .spacing = options.spacing, .seed = options.seed};
     settings.camera = resized(settings.camera, options.width);
-    settings.sensor = {.noise = options.noise, .seed = options.seed};
+    settings.sensor.ranging = {.noise = options.noise, .seed = options.seed};
     Random random(options.seed ^ 0x7ab1e, number);
     std::vector<std::uint32_t> chosen;
     for (int i = 0; i < options.objects; ++i) {

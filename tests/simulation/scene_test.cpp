@@ -183,7 +183,7 @@ TEST(SimulateRandomView, HasAsManyObjectsAsAskedForApartAndNoTable) {
 TEST(SimulatedScenes, DependOnSeedAndNumberOnly) {
     const SceneModels models = box_models();
     TabletopSettings settings;
-    settings.sensor.noise = 0.3;
+    settings.sensor.ranging.noise = 0.3;
     const std::vector<std::uint32_t> chosen = {0, 1};
     set_thread_count(1);
     const SimulatedScene one = simulate_tabletop(models, chosen, 5, settings);
@@ -205,7 +205,7 @@ TEST(SimulatedScenes, NoiseHasItsDeviationAlongTheDepth) {
     TabletopSettings settings;
     const std::vector<std::uint32_t> chosen = {2};
     const SimulatedScene exact = simulate_tabletop(models, chosen, 1, settings);
-    settings.sensor.noise = 0.4;
+    settings.sensor.ranging.noise = 0.4;
     const SimulatedScene noisy = simulate_tabletop(models, chosen, 1, settings);
     double squares = 0.0;
     double count = 0.0;

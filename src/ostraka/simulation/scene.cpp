@@ -21,8 +21,80 @@ TriangleMesh square(double side) {
     return mesh;
 }
 
-std::size_t count_pixels(const RenderedView& view, std::uint32_t mesh) {
-    return static_cast<std::size_t>(std::count(view.mesh.begin(), view.mesh.end(), mesh));
+// Columns or rows of an image, [first, last), that may show a ball: its outline lies between the
+// tangents from the sensor. At most one image beyond the border on either side, as in BOP.
+struct PixelRange {
+    int first = 0;
+    int last = 0;
+};
+
+PixelRange pixel_range(double center, double depth, double radius, double focal_length,
+                       double principal, int size) {
+    PixelRange range{-size, 2 * size};
+    const double distance2 = center * center + depth * depth - radius * radius;
+    if (depth <= 0.0 || distance2 <= 0.0) return range;
+    const double middle = std::atan2(center, depth);
+    const double half = std::atan2(radius, std::sqrt(distance2));
+    if (middle - half > -1.5) {
+        const double low = focal_length * std::tan(middle - half) + principal;
+        range.first = static_cast<int>(std::clamp(std::floor(low), -1.0 * size, 2.0 * size));
+    }
+    if (middle + half < 1.5) {
+        const double high = focal_length * std::tan(middle + half) + principal;
+        range.last = static_cast<int>(std::clamp(std::ceil(high) + 1.0, -1.0 * size, 2.0 * size));
+    }
+    return range;
+}
+
+// Counts the pixels of one object and finds its silhouette: rays are cast only where it may be
+// and is not known to be already.
+void find_silhouette(const PlacedRayModel& placed, const MeshShape& shape, const SceneView& view,
+                     std::uint32_t label, SimulatedScene& scene) {
+    const PinholeCamera& camera = view.camera;
+    const Vec3d center = scene.objects[label].T_scene_model * shape.center;
+    const double radius = shape.radius * 1.001;
+    const PixelRange columns =
+        pixel_range(center.x(), center.z(), radius, camera.fx, camera.cx, camera.width);
+    const PixelRange rows =
+        pixel_range(center.y(), center.z(), radius, camera.fy, camera.cy, camera.height);
+    const RayScene alone(std::vector<PlacedRayModel>{placed});
+    const Pose T_world_camera = view.T_camera_world.inverse();
+    const Vec3d origin = T_world_camera.translation();
+    TrueObject& object = scene.objects[label];
+    std::vector<std::uint32_t>& silhouette = scene.silhouettes[label];
+    std::vector<Vec3d> directions;
+    std::vector<int> asked;
+    for (int row = rows.first; row < rows.last; ++row) {
+        directions.clear();
+        asked.clear();
+        const bool inside_rows = row >= 0 && row < camera.height;
+        const auto pixel_of = [&](int column) {
+            return static_cast<std::uint32_t>(row * camera.width + column);
+        };
+        for (int column = columns.first; column < columns.last; ++column) {
+            const bool inside = inside_rows && column >= 0 && column < camera.width;
+            if (inside && scene.visible[pixel_of(column)] == label) {
+                ++object.pixels_visible;
+                ++object.pixels_total;
+                silhouette.push_back(pixel_of(column));
+                continue;
+            }
+            asked.push_back(column);
+            directions.emplace_back(T_world_camera.linear() * camera.ray(column, row));
+        }
+        const std::vector<RayHit> hits = alone.cast(origin, directions);
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+            if (!hits[i].hit()) continue;
+            ++object.pixels_total;
+            const bool inside = inside_rows && asked[i] >= 0 && asked[i] < camera.width;
+            if (inside) silhouette.push_back(pixel_of(asked[i]));
+        }
+    }
+    std::sort(silhouette.begin(), silhouette.end());
+    if (object.pixels_total > 0) {
+        object.visible_fraction =
+            static_cast<double>(object.pixels_visible) / static_cast<double>(object.pixels_total);
+    }
 }
 
 double mean_diameter(const SceneModels& models, std::span<const std::uint32_t> chosen) {
@@ -47,36 +119,42 @@ Pose stand(const TriangleMesh& mesh, const MeshShape& shape, const Mat3d& R_worl
 
 }  // namespace
 
-SceneModels scene_models(std::vector<TriangleMesh> meshes) {
-    SceneModels models{std::move(meshes), {}};
-    models.shapes.resize(models.meshes.size());
-    parallel_for(models.meshes.size(),
-                 [&](std::size_t i) { models.shapes[i] = measure(models.meshes[i]); });
+SceneModels scene_models(std::vector<TriangleMesh> meshes, std::vector<MeshShape> shapes) {
+    SceneModels models{std::move(meshes), std::move(shapes), {}};
+    if (models.shapes.size() != models.meshes.size()) {
+        models.shapes.resize(models.meshes.size());
+        parallel_for(models.meshes.size(),
+                     [&](std::size_t i) { models.shapes[i] = measure(models.meshes[i]); });
+    }
+    for (const TriangleMesh& mesh : models.meshes) models.rays.emplace_back(mesh);
     return models;
 }
 
 SimulatedScene simulate_scene(const SceneModels& models, std::span<const PlacedModel> placed,
                               const SceneView& view) {
-    std::vector<TriangleMesh> world;
+    std::vector<PlacedRayModel> world;
     for (const PlacedModel& object : placed) {
-        world.push_back(transformed(models.meshes[object.model], object.T_world_model));
+        world.push_back({models.rays[object.model], object.T_world_model});
     }
-    if (view.table_size > 0.0) world.push_back(square(view.table_size));
+    for (const RayModel& model : view.furniture) world.push_back({model});
+    if (view.table_size > 0.0) world.push_back({RayModel(square(view.table_size))});
     SimulatedScene scene;
     RenderedView rendered = render(RayScene(world), view.camera, view.T_camera_world, view.sensor);
-    scene.objects.resize(placed.size());
-    parallel_for(placed.size(), [&](std::size_t i) {
-        const RenderedView alone = render(RayScene({world[i]}), view.camera, view.T_camera_world);
-        const std::size_t total = count_pixels(alone, 0);
-        const std::size_t seen = count_pixels(rendered, static_cast<std::uint32_t>(i));
-        scene.objects[i] = {placed[i].model, view.T_camera_world * placed[i].T_world_model,
-                            total > 0 ? double(seen) / double(total) : 0.0};
-    });
     scene.cloud = std::move(rendered.cloud);
     scene.labels = std::move(rendered.mesh);
-    for (std::uint32_t& label : scene.labels) {
-        if (label >= placed.size()) label = kNoIndex;
+    scene.visible = std::move(rendered.true_mesh);
+    for (std::vector<std::uint32_t>* labels : {&scene.labels, &scene.visible}) {
+        for (std::uint32_t& label : *labels) {
+            if (label >= placed.size()) label = kNoIndex;
+        }
     }
+    scene.objects.resize(placed.size());
+    scene.silhouettes.resize(placed.size());
+    parallel_for(placed.size(), [&](std::size_t i) {
+        scene.objects[i] = {placed[i].model, view.T_camera_world * placed[i].T_world_model};
+        find_silhouette(world[i], models.shapes[placed[i].model], view,
+                        static_cast<std::uint32_t>(i), scene);
+    });
     return scene;
 }
 
@@ -107,7 +185,7 @@ SimulatedScene simulate_tabletop(const SceneModels& models, std::span<const std:
         .T_camera_world = look_at(eye, target, Vec3d(0.0, std::sin(roll), std::cos(roll))),
         .sensor = settings.sensor,
         .table_size = 8.0 * diameter};
-    view.sensor.seed = settings.sensor.seed + (number << 32U);
+    view.sensor.ranging.seed = settings.sensor.ranging.seed + (number << 32U);
     return simulate_scene(models, placed, view);
 }
 
@@ -140,7 +218,7 @@ SimulatedScene simulate_random_view(const SceneModels& models, std::uint64_t num
     SceneView view{.camera = settings.camera,
                    .T_camera_world = look_at(eye, middle, Vec3d::UnitY()),
                    .sensor = settings.sensor};
-    view.sensor.seed = settings.sensor.seed + (number << 32U);
+    view.sensor.ranging.seed = settings.sensor.ranging.seed + (number << 32U);
     return simulate_scene(models, placed, view);
 }
 

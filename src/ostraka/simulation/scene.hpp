@@ -14,8 +14,10 @@ namespace ostraka {
 struct SceneModels {
     std::vector<TriangleMesh> meshes;
     std::vector<MeshShape> shapes;  ///< measure() of each
+    std::vector<RayModel> rays;     ///< each, ready to be seen
 };
-SceneModels scene_models(std::vector<TriangleMesh> meshes);
+/// Measures the meshes. @param shapes  where they are known already.
+SceneModels scene_models(std::vector<TriangleMesh> meshes, std::vector<MeshShape> shapes = {});
 
 struct PlacedModel {
     std::uint32_t model = 0;  ///< index into SceneModels
@@ -26,6 +28,8 @@ struct TrueObject {
     std::uint32_t model = 0;                ///< index into SceneModels
     Pose T_scene_model = Pose::Identity();  ///< the scan's frame is the camera's
     double visible_fraction = 0.0;          ///< pixels seen / pixels if nothing were in front
+    std::size_t pixels_visible = 0;         ///< in the image, not hidden; some may give no depth
+    std::size_t pixels_total = 0;           ///< of its silhouette, also beyond the image's border
 };
 
 struct SimulatedScene {
@@ -33,13 +37,17 @@ struct SimulatedScene {
     std::vector<TrueObject> objects;  ///< in the order of their placement
     std::vector<std::uint32_t>
         labels;  ///< per pixel: index into objects, or kNoIndex (table, nothing)
+    std::vector<std::vector<std::uint32_t>>
+        silhouettes;  ///< per object: pixels of its outline, hidden or not, ascending
+    std::vector<std::uint32_t> visible;  ///< per pixel: as labels, but before the sensor's faults
 };
 
 struct SceneView {
     PinholeCamera camera;
     Pose T_camera_world = Pose::Identity();
-    SensorSettings sensor;    ///< noise in the meshes' unit
-    double table_size = 0.0;  ///< side of a square table at world z = 0, its top; 0: none
+    SensorModel sensor;               ///< lengths in the meshes' unit
+    double table_size = 0.0;          ///< side of a square table at world z = 0, its top; 0: none
+    std::vector<RayModel> furniture;  ///< what else stands there, in the world frame: a bin
 };
 
 /// Renders placed models.
@@ -53,7 +61,7 @@ struct TabletopSettings {
     double max_elevation = 1.35;  ///< radians
     double distance = 4.0;        ///< from sensor to the objects, in mean diameters
     PinholeCamera camera;         ///< 640 x 480, 58 degrees wide
-    SensorSettings sensor;
+    SensorModel sensor;
     std::uint64_t seed = 0;  ///< scene number i uses (seed, i)
 };
 
@@ -68,7 +76,7 @@ struct RandomViewSettings {
     double spread = 0.35;   ///< how far objects lie beside the line of sight, in mean diameters
     double distance = 5.0;  ///< from sensor to the middle, in mean diameters
     PinholeCamera camera{1280, 960, 1600.0, 1600.0, 639.5, 479.5};
-    SensorSettings sensor;
+    SensorModel sensor;
     std::uint64_t seed = 0;  ///< scene number i uses (seed, i)
 };
 
