@@ -25,6 +25,7 @@ TEST(PngFile, WritesColorImagesThatAreNoDepth) {
     const Image image = {2, 1, {{255, 0, 0}, {1, 2, 3}}};
     write_png(folder / "c.png", image);
     const std::string bytes = load_text(folder / "c.png");
+    EXPECT_EQ(bytes, encode_png(image));
     ASSERT_GT(bytes.size(), 33U);
     EXPECT_EQ(bytes.substr(1, 3), "PNG");
     EXPECT_EQ(bytes.substr(16, 10), std::string("\0\0\0\2\0\0\0\1\x08\x02", 10));

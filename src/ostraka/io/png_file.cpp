@@ -188,10 +188,14 @@ std::string encode(const Shape& shape, const Packing& packing, const void* pixel
 
 }  // namespace
 
-void write_png(const std::filesystem::path& path, const Image& image) {
+std::string encode_png(const Image& image) {
     const Shape shape =
         checked_shape(image.width, image.height, 8, PNG_COLOR_TYPE_RGB, image.pixels.size());
-    write_file_atomically(path, encode(shape, {}, image.pixels.data(), sizeof(Color)));
+    return encode(shape, {}, image.pixels.data(), sizeof(Color));
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+    write_file_atomically(path, encode_png(image));
 }
 
 std::string encode_depth_png16(int width, int height, std::span<const std::uint16_t> values) {

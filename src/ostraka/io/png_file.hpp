@@ -46,7 +46,8 @@ void write_depth_png16(const std::filesystem::path& path, int width, int height,
 void write_gray_png8(const std::filesystem::path& path, int width, int height,
                      std::span<const std::uint8_t> values);
 
-/// The files' bytes, for those who write many at once. @throws InvalidInput as above.
+/// The bytes of such a file. @throws InvalidInput as above.
+std::string encode_png(const Image& image);
 std::string encode_depth_png16(int width, int height, std::span<const std::uint16_t> values);
 std::string encode_gray_png8(int width, int height, std::span<const std::uint8_t> values);
 
