@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 #include "ostraka/base/error.hpp"
@@ -102,16 +101,6 @@ const Json& json_list_or_empty(const Json& object, const std::string& key, std::
         place.fail(fmt::format("\"{}\" has {} items, more than {}", key, found->size(), most));
     }
     return *found;
-}
-
-std::optional<int> whole_number(std::string_view text) {
-    int number = 0;
-    const char* end = text.data() + text.size();
-    const auto [stop, problem] = std::from_chars(text.data(), end, number);
-    if (problem != std::errc() || stop != end || number < 0 || text.starts_with('-')) {
-        return std::nullopt;
-    }
-    return number;
 }
 
 }  // namespace ostraka

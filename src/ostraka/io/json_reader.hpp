@@ -5,10 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "ostraka/base/types.hpp"
@@ -57,8 +55,5 @@ std::string json_text_or_empty(const nlohmann::json& object, const std::string& 
 /// The list under `key`, empty where there is none. @param most  items it may have.
 const nlohmann::json& json_list_or_empty(const nlohmann::json& object, const std::string& key,
                                          std::size_t most, const JsonPlace& place);
-
-/// The whole text as a number from 0, as BOP names models and images; leading zeros are fine.
-std::optional<int> whole_number(std::string_view text);
 
 }  // namespace ostraka

@@ -11,6 +11,7 @@
 #include "ostraka/io/atomic_file.hpp"
 #include "ostraka/io/json_reader.hpp"
 #include "ostraka/io/rigid_matrix.hpp"
+#include "ostraka/io/text.hpp"
 #include "ostraka/mesh/shape.hpp"
 #include "ostraka/mesh/symmetry_poses.hpp"
 

@@ -102,6 +102,16 @@ bool parse_integer(std::string_view word, std::int64_t& value) {
     return error == std::errc() && stop == end;
 }
 
+std::optional<int> whole_number(std::string_view text) {
+    int number = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, problem] = std::from_chars(text.data(), end, number);
+    if (problem != std::errc() || stop != end || number < 0 || text.starts_with('-')) {
+        return std::nullopt;
+    }
+    return number;
+}
+
 bool equals_ignoring_case(std::string_view word, std::string_view lower) {
     if (word.size() != lower.size()) {
         return false;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,6 +54,9 @@ bool parse_number(std::string_view word, double& value);
 
 /// The whole word as a decimal integer; "3.0" is none.
 bool parse_integer(std::string_view word, std::int64_t& value);
+
+/// The whole text as a number from 0, as names of files and keys hold it; leading zeros are fine.
+std::optional<int> whole_number(std::string_view text);
 
 /// Equal but for the case of ASCII letters. @param lower  in lower case.
 bool equals_ignoring_case(std::string_view word, std::string_view lower);
