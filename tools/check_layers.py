@@ -34,8 +34,9 @@ MODULES = {
     "recognition": ["base", "cloud", "mesh", "io", "registration", "views", "subparts",
                     "descriptors", "library"],
     "simulation": ["base", "cloud", "mesh", "io", "views"],
+    "report": ["base", "cloud", "mesh", "io"],
     "evaluation": ["base", "cloud", "mesh", "io", "registration", "views", "subparts",
-                   "descriptors", "library", "recognition", "simulation"],
+                   "descriptors", "library", "recognition", "simulation", "report"],
 }
 
 # Library -> (how its headers' names begin, modules that may use it; None: all of them).
