@@ -91,15 +91,20 @@ PixelBox box_of(const std::vector<std::uint8_t>& mask, const PinholeCamera& came
     int right = -1;
     int top = -1;
     int bottom = -1;
-    std::size_t pixel = 0;
     for (int row = 0; row < camera.height; ++row) {
-        for (int column = 0; column < camera.width; ++column) {
-            if (mask[pixel++] == 0) continue;
-            left = std::min(left, column);
-            right = std::max(right, column);
-            top = top < 0 ? row : top;
-            bottom = row;
+        const std::uint8_t* pixels = mask.data() + static_cast<std::ptrdiff_t>(row) * camera.width;
+        // Most rows are empty; this loop, unlike a search, runs on vectors.
+        unsigned any = 0;
+        for (int column = 0; column < camera.width; ++column) any |= pixels[column];
+        if (any == 0) continue;
+        for (int column = 0; column < left; ++column) {
+            if (pixels[column] != 0) left = column;
         }
+        for (int column = camera.width - 1; column > right; --column) {
+            if (pixels[column] != 0) right = column;
+        }
+        top = top < 0 ? row : top;
+        bottom = row;
     }
     return right < 0 ? PixelBox{} : PixelBox{left, top, right - left, bottom - top};
 }
@@ -140,7 +145,8 @@ void measure_masks(BopImage& image) {
         object.pixels_visible = count(masks.visible);
         object.pixels_valid = 0;
         for (std::size_t pixel = 0; pixel < masks.all.size(); ++pixel) {
-            object.pixels_valid += masks.all[pixel] != 0 && image.depth[pixel] > 0.0F ? 1 : 0;
+            object.pixels_valid += static_cast<int>(masks.all[pixel] != 0) &
+                                   static_cast<int>(image.depth[pixel] > 0.0F);
         }
         object.visible_fraction =
             object.pixels_all == 0
