@@ -127,6 +127,13 @@ TEST(Page, TablesTellNumbersFromTextAndGoodFromBad) {
     EXPECT_TRUE(says(parse_xml(empty.html()), "no data"));
 }
 
+TEST(Page, LinesAreNotBrokenBeforeAPercentSign) {
+    PageContent page;
+    page.paragraph("95 % of 40 % and the % sign");
+    page.preformatted("95 %");
+    EXPECT_EQ(page.html(), "<p>95\xC2\xA0% of 40\xC2\xA0% and the % sign</p>\n<pre>95 %</pre>\n");
+}
+
 TEST(Page, NothingIsWrittenForNothing) {
     PageContent page;
     page.facts({});

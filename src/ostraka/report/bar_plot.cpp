@@ -206,7 +206,7 @@ void draw_references(SvgCanvas& canvas, const BarPlot& plot, const ChartLayout& 
         if (!(line.value >= axis.low && line.value <= axis.high)) continue;
         const double y = layout.y(axis, line.value);
         const Paint* paint = line.series ? &series_paint(*line.series) : &kQuiet;
-        canvas.line({layout.left, y}, {layout.right, y}, {&kPaper, 3.5});
+        canvas.line({layout.left, y}, {layout.right, y}, {&kPaper, 2.5});
         canvas.line({layout.left, y}, {layout.right, y}, {paint, 1.5, "5 3"});
     }
 }

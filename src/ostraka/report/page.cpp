@@ -12,13 +12,25 @@
 namespace ostraka {
 namespace {
 
+// Text that is broken into lines, though not between a number and its percent sign.
+std::string prose(std::string_view text) {
+    constexpr std::string_view kFixedSpace = "\xC2\xA0";
+    std::string html = escape_html(text);
+    for (std::size_t i = 1; i + 1 < html.size(); ++i) {
+        if (html[i] != ' ' || html[i + 1] != '%' || html[i - 1] < '0' || html[i - 1] > '9')
+            continue;
+        html.replace(i, 1, kFixedSpace);
+    }
+    return html;
+}
+
 std::string element(std::string_view tag, std::string_view text) {
-    return fmt::format("<{0}>{1}</{0}>\n", tag, escape_html(text));
+    return fmt::format("<{0}>{1}</{0}>\n", tag, prose(text));
 }
 
 std::string figure_html(std::string_view inner, std::string_view caption) {
     std::string html = fmt::format("<figure>{}", inner);
-    if (!caption.empty()) html += fmt::format("<figcaption>{}</figcaption>", escape_html(caption));
+    if (!caption.empty()) html += fmt::format("<figcaption>{}</figcaption>", prose(caption));
     return html + "</figure>\n";
 }
 
@@ -81,7 +93,7 @@ void PageContent::paragraph(std::string_view text) {
 }
 
 void PageContent::note(std::string_view text) {
-    body_ += fmt::format("<p class=\"note\">{}</p>\n", escape_html(text));
+    body_ += fmt::format("<p class=\"note\">{}</p>\n", prose(text));
 }
 
 void PageContent::list(std::span<const std::string> items) {
@@ -98,7 +110,7 @@ void PageContent::facts(std::span<const Fact> facts) {
         body_ += fmt::format(R"(<div><dt>{}</dt><dd class="value">{}</dd>)",
                              escape_html(fact.label), escape_html(fact.value));
         if (!fact.note.empty()) {
-            body_ += fmt::format(R"(<dd class="note">{}</dd>)", escape_html(fact.note));
+            body_ += fmt::format(R"(<dd class="note">{}</dd>)", prose(fact.note));
         }
         body_ += "</div>\n";
     }
@@ -163,7 +175,7 @@ void PageContent::details(std::string_view summary, const PageContent& inner, bo
 }
 
 void PageContent::preformatted(std::string_view text) {
-    body_ += element("pre", text);
+    body_ += fmt::format("<pre>{}</pre>\n", escape_html(text));
 }
 
 std::string PageContent::html(bool anchors) const {

@@ -85,7 +85,7 @@ margin:20px 0 26px}
 body{max-width:none;padding:0;font-size:10.5pt}h2{margin-top:28pt}nav{display:none}
 .figures{grid-template-columns:minmax(0,1fr)}
 .facts{grid-template-columns:repeat(auto-fit,minmax(38mm,1fr));gap:3mm}.facts .value{font-size:20pt}
-table{font-size:9pt}th,td{padding:1.2mm 0 1.2mm 5mm}tr{break-inside:avoid}thead{display:table-header-group}
+table{font-size:9pt}th,td{padding:1.2mm 0 1.2mm 5mm}tr{break-inside:avoid}caption,thead{break-after:avoid}thead{display:table-header-group}
 pre{white-space:pre-wrap;overflow-wrap:anywhere}.table{overflow:visible}
 details::details-content{content-visibility:visible;display:block}}
 )";
