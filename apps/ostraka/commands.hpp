@@ -19,6 +19,8 @@ void add_views(CLI::App& app);
 void add_parts(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_evaluate(CLI::App& app);
+void add_evaluate_segments(CLI::App& parent);
+void add_evaluate_scenes(CLI::App& parent);   ///< scenes and pose
 void add_evaluate_library(CLI::App& parent);  ///< of `ostraka evaluate`
 
 }  // namespace ostraka::app

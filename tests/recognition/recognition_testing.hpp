@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ostraka/base/random.hpp"
-#include "ostraka/evaluation/metrics.hpp"
+#include "ostraka/evaluation/pose_errors.hpp"
 #include "ostraka/recognition/hypothesis.hpp"
 #include "ostraka/recognition/recognize.hpp"
 #include "ostraka/simulation/scene.hpp"

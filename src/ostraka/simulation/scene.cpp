@@ -97,12 +97,6 @@ void find_silhouette(const PlacedRayModel& placed, const MeshShape& shape, const
     }
 }
 
-double mean_diameter(const SceneModels& models, std::span<const std::uint32_t> chosen) {
-    double sum = 0.0;
-    for (const std::uint32_t model : chosen) sum += models.shapes[model].diameter;
-    return sum / static_cast<double>(chosen.size());
-}
-
 // The pose of a mesh turned by R, its center above `place`, its lowest point at height 0.
 Pose stand(const TriangleMesh& mesh, const MeshShape& shape, const Mat3d& R_world_model,
            const Vec3d& place) {
@@ -130,6 +124,22 @@ SceneModels scene_models(std::vector<TriangleMesh> meshes, std::vector<MeshShape
     return models;
 }
 
+double mean_diameter(const SceneModels& models, std::span<const std::uint32_t> chosen) {
+    double sum = 0.0;
+    for (const std::uint32_t model : chosen) sum += models.shapes[model].diameter;
+    return sum / static_cast<double>(chosen.size());
+}
+
+Pose view_from_above(Random& random, const Vec3d& target, const ViewFromAbove& settings) {
+    const double azimuth = random.uniform(0.0, 2.0 * kPi);
+    const double elevation = random.uniform(settings.min_elevation, settings.max_elevation);
+    const double roll = random.uniform(-0.3, 0.3);
+    const Vec3d direction(std::cos(elevation) * std::cos(azimuth),
+                          std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+    return look_at(target + settings.distance * direction, target,
+                   Vec3d(0.0, std::sin(roll), std::cos(roll)));
+}
+
 SimulatedScene simulate_scene(const SceneModels& models, std::span<const PlacedModel> placed,
                               const SceneView& view) {
     std::vector<PlacedRayModel> world;
@@ -138,7 +148,7 @@ SimulatedScene simulate_scene(const SceneModels& models, std::span<const PlacedM
     }
     for (const RayModel& model : view.furniture) world.push_back({model});
     if (view.table_size > 0.0) world.push_back({RayModel(square(view.table_size))});
-    SimulatedScene scene;
+    SimulatedScene scene{.camera = view.camera, .T_camera_world = view.T_camera_world};
     RenderedView rendered = render(RayScene(world), view.camera, view.T_camera_world, view.sensor);
     scene.cloud = std::move(rendered.cloud);
     scene.labels = std::move(rendered.mesh);
@@ -172,19 +182,12 @@ SimulatedScene simulate_tabletop(const SceneModels& models, std::span<const std:
         const std::uint32_t m = chosen[i];
         placed.push_back({m, stand(models.meshes[m], models.shapes[m], random.rotation(), place)});
     }
-    const double azimuth = random.uniform(0.0, 2.0 * kPi);
-    const double elevation = random.uniform(settings.min_elevation, settings.max_elevation);
-    const double roll = random.uniform(-0.3, 0.3);
-    const Vec3d target(0.0, 0.0, 0.3 * diameter);
-    const double distance = settings.distance * diameter;
-    const Vec3d eye =
-        target + distance * Vec3d(std::cos(elevation) * std::cos(azimuth),
-                                  std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-    SceneView view{
-        .camera = settings.camera,
-        .T_camera_world = look_at(eye, target, Vec3d(0.0, std::sin(roll), std::cos(roll))),
-        .sensor = settings.sensor,
-        .table_size = 8.0 * diameter};
+    const ViewFromAbove from{settings.min_elevation, settings.max_elevation,
+                             settings.distance * diameter};
+    SceneView view{.camera = settings.camera,
+                   .T_camera_world = view_from_above(random, Vec3d(0.0, 0.0, 0.3 * diameter), from),
+                   .sensor = settings.sensor,
+                   .table_size = 8.0 * diameter};
     view.sensor.ranging.seed = settings.sensor.ranging.seed + (number << 32U);
     return simulate_scene(models, placed, view);
 }

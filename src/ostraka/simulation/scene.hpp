@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "ostraka/base/random.hpp"
 #include "ostraka/mesh/shape.hpp"
 #include "ostraka/views/render.hpp"
 
@@ -33,6 +34,8 @@ struct TrueObject {
 };
 
 struct SimulatedScene {
+    PinholeCamera camera;
+    Pose T_camera_world = Pose::Identity();
     PointCloud cloud;                 ///< organized, camera frame, sensor at the origin
     std::vector<TrueObject> objects;  ///< in the order of their placement
     std::vector<std::uint32_t>
@@ -49,6 +52,18 @@ struct SceneView {
     double table_size = 0.0;          ///< side of a square table at world z = 0, its top; 0: none
     std::vector<RayModel> furniture;  ///< what else stands there, in the world frame: a bin
 };
+
+/// Mean diameter of the chosen models. @param chosen  at least 1.
+double mean_diameter(const SceneModels& models, std::span<const std::uint32_t> chosen);
+
+/// A sensor above a table.
+struct ViewFromAbove {
+    double min_elevation = 0.35;  ///< radians above the table
+    double max_elevation = 1.35;  ///< radians
+    double distance = 1.0;        ///< from sensor to target
+};
+/// T_camera_world from a random side and elevation, with a slight roll. World z is up.
+Pose view_from_above(Random& random, const Vec3d& target, const ViewFromAbove& settings);
 
 /// Renders placed models.
 SimulatedScene simulate_scene(const SceneModels& models, std::span<const PlacedModel> placed,

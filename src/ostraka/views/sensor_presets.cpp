@@ -104,7 +104,7 @@ SensorPreset laser_line() {
     model.mixed_pixels = 0.05;
     return {"laser-line",
             "a swept laser line, Minolta Vivid and its kind: 640 x 480, 210 mm baseline",
-            centered(640, 480, 1120.0), model, 1000.0};
+            centered(640, 480, 1000.0), model, 1000.0};
 }
 
 }  // namespace

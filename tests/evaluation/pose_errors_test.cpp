@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ostraka/evaluation/metrics.hpp"
+#include "ostraka/evaluation/pose_errors.hpp"
 
 #include <gtest/gtest.h>
 
