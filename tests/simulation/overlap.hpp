@@ -115,11 +115,30 @@ class PlacedMesh {
     PlacedMesh(const PlacedMesh&) = delete;
     PlacedMesh(PlacedMesh&&) = default;
 
-    // At least two of three rays have it inside: so small holes and grazed edges do not matter.
+    // Rays are quick, but go wrong at the many edges of more than two triangles that scanned models
+    // have. So where any of three has the point inside, the winding number decides.
     bool inside(const Vec3d& p) const {
         if ((p.array() < low.array()).any() || (p.array() > high.array()).any()) return false;
-        const int votes = rays_[0].inside(p) + rays_[1].inside(p);
-        return votes == 2 || (votes == 1 && rays_[2].inside(p));
+        return std::any_of(rays_.begin(), rays_.end(),
+                           [&](const RayParity& ray) { return ray.inside(p); }) &&
+               std::abs(winding_number(p)) > 0.5;
+    }
+
+    // Jacobson, Kavan, Sorkine-Hornung. Robust Inside-Outside Segmentation using Generalized
+    // Winding Numbers. 2013. A triangle's solid angle after Van Oosterom and Strackee, 1983.
+    double winding_number(const Vec3d& p) const {
+        double sum = 0.0;
+        for (const Triangle& t : triangles_) {
+            const Vec3d a = vertices[t[0]] - p;
+            const Vec3d b = vertices[t[1]] - p;
+            const Vec3d c = vertices[t[2]] - p;
+            const double la = a.norm();
+            const double lb = b.norm();
+            const double lc = c.norm();
+            sum += 2.0 * std::atan2(a.dot(b.cross(c)),
+                                    la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+        }
+        return sum / (4.0 * kPi);
     }
 
     // From a point to the surface.
