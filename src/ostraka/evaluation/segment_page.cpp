@@ -172,10 +172,9 @@ void add_facts(PageContent& page, std::span<const SegmentRun> runs) {
 }  // namespace
 
 std::string interval_text(const Interval& interval, bool sign) {
-    return sign ? fmt::format("{:+.3f} ({:+.2f} to {:+.2f})", interval.value, interval.low,
-                              interval.high)
-                : fmt::format("{:.3f} ({:.2f} to {:.2f})", interval.value, interval.low,
-                              interval.high);
+    const double half = (interval.high - interval.low) / 2.0;
+    return sign ? fmt::format("{:+.3f} ±{:.2f}", interval.value, half)
+                : fmt::format("{:.3f} ±{:.2f}", interval.value, half);
 }
 
 PageContent segment_page(std::span<const SegmentRun> runs, std::span<const std::string> models,
@@ -189,7 +188,7 @@ PageContent segment_page(std::span<const SegmentRun> runs, std::span<const std::
     add_facts(page, runs);
     page.heading(fmt::format("Recognition rate, k = {}", ks.front()));
     page.paragraph(
-        "Share of segments whose first-ranked model is right. In brackets the 95 % "
+        "Share of segments whose first-ranked model is right. Behind ± half of the 95 % "
         "interval, by scenes drawn with repetition.");
     page.table(rate_table(runs, 0));
     if (libraries_of(runs).size() > 1) page.table(gain_table(runs, 0));

@@ -24,7 +24,7 @@ struct SegmentRun {
 PageContent segment_page(std::span<const SegmentRun> runs, std::span<const std::string> models,
                          std::span<const std::size_t> ks);
 
-/// "0.755 (0.70 to 0.81)", with a sign for differences.
+/// "0.755 ±0.05", half of the interval's width; with a sign for differences.
 std::string interval_text(const Interval& interval, bool sign = false);
 
 }  // namespace ostraka

@@ -13,9 +13,9 @@
 namespace ostraka {
 
 struct IcpRedundancySettings {
-    double max_deviation_ratio = 1.15;  ///< of the extents along each principal direction; pairs
+    double max_deviation_ratio = 1.10;  ///< of the extents along each principal direction; pairs
                                         ///< that differ more can't match and are not registered
-    double max_distance = 2.0;  ///< between matching points, in distances between those compared
+    double max_distance = 1.0;  ///< between matching points, in distances between those compared
     double min_match = 0.9;     ///< share of either's points that must match
     std::size_t points = 200;   ///< of each cloud that are compared, thinned out evenly
 };
