@@ -45,7 +45,10 @@ double distance_in_diameters(const SceneOptions& options, double own, const Pinh
                              const PinholeCamera& after, const SensorModel& sensor,
                              double diameter) {
     if (options.distance > 0.0) return options.distance / diameter;
-    const double zoom = (after.fx / after.width) / (before.fx / before.width);
+    const auto narrowness = [](const PinholeCamera& camera) {
+        return std::max(camera.fx / camera.width, camera.fy / camera.height);
+    };
+    const double zoom = narrowness(after) / narrowness(before);
     return std::max(own * zoom, 1.3 * sensor.min_depth / diameter);
 }
 

@@ -55,9 +55,21 @@ TEST(BootstrapRatio, KnowsDifferencesAndNothing) {
     EXPECT_EQ(bootstrap_ratio({}, {}).high, 0.0);
     const std::vector<double> zeros(3, 0.0);
     EXPECT_EQ(bootstrap_ratio(zeros, zeros).value, 0.0);
-    const Interval certain = bootstrap_ratio(std::vector<double>(5, 2.0), std::vector<double>(5, 2.0));
+    const Interval certain =
+        bootstrap_ratio(std::vector<double>(5, 2.0), std::vector<double>(5, 2.0));
     EXPECT_EQ(certain.low, 1.0);
     EXPECT_EQ(certain.high, 1.0);
+}
+
+// Most scenes hold nothing of what is asked for: they must not pull the interval to 0.
+TEST(BootstrapRatio, LeavesOutDrawsThatSayNothing) {
+    std::vector<double> parts(50, 0.0);
+    std::vector<double> wholes(50, 0.0);
+    parts[7] = wholes[7] = 2.0;
+    const Interval interval = bootstrap_ratio(parts, wholes);
+    EXPECT_EQ(interval.value, 1.0);
+    EXPECT_EQ(interval.low, 1.0);
+    EXPECT_EQ(interval.high, 1.0);
 }
 
 TEST(BootstrapMedian, LiesAmongTheValues) {

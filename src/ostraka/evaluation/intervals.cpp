@@ -2,7 +2,9 @@
 #include "ostraka/evaluation/intervals.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "ostraka/base/random.hpp"
@@ -16,18 +18,22 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-// `value` of the items as they are, and of `draws` samples of as many items with repetition.
+// `value` of the items as they are, and of `draws` samples of as many items with repetition; NaN
+// where it isn't defined.
 Interval resample(std::size_t count, std::uint64_t seed, int draws,
                   const std::function<double(std::span<const std::uint32_t>)>& value) {
     std::vector<std::uint32_t> items(count);
     for (std::uint32_t i = 0; i < count; ++i) items[i] = i;
     Interval interval{.value = value(items)};
-    std::vector<double> values(static_cast<std::size_t>(std::max(1, draws)));
-    for (std::size_t draw = 0; draw < values.size(); ++draw) {
-        Random random(seed, draw);
+    if (std::isnan(interval.value)) return {};
+    std::vector<double> values;
+    for (int draw = 0; draw < std::max(1, draws); ++draw) {
+        Random random(seed, static_cast<std::uint64_t>(draw));
         for (std::uint32_t& item : items) item = random.below(static_cast<std::uint32_t>(count));
-        values[draw] = value(items);
+        // A draw in which nothing was to be found says nothing.
+        if (const double drawn = value(items); !std::isnan(drawn)) values.push_back(drawn);
     }
+    if (values.empty()) values.push_back(interval.value);
     std::sort(values.begin(), values.end());
     const std::size_t tail = values.size() / 40;  // 2.5 %
     interval.low = values[tail];
@@ -46,7 +52,7 @@ Interval bootstrap_ratio(std::span<const double> parts, std::span<const double> 
             part += parts[i];
             whole += wholes[i];
         }
-        return whole > 0.0 ? part / whole : 0.0;
+        return whole > 0.0 ? part / whole : std::numeric_limits<double>::quiet_NaN();
     };
     if (parts.empty()) return {};
     return resample(parts.size(), seed, draws, ratio);
