@@ -14,6 +14,7 @@ Journal::Journal(const std::filesystem::path& path, std::string key)
     if (path.empty()) return;
     std::uintmax_t whole = 0;  // bytes up to the end of the last whole line
     if (std::filesystem::exists(path)) {
+        if (std::filesystem::is_directory(path)) throw FileError(path, "is a folder");
         std::ifstream existing(path, std::ios::binary);
         if (!existing) throw FileError(path, "can't be read");
         const std::string text{std::istreambuf_iterator<char>(existing), {}};

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "ostraka/base/error.hpp"
@@ -24,6 +25,12 @@ Pose pose_from(const Json& numbers) {
         pose(i / 4, i % 4) = numbers.at(static_cast<std::size_t>(i)).get<double>();
     }
     return pose;
+}
+
+// JSON has no infinity, which an error is where a point has no place in the image: null stands for
+// it.
+double error_from(const Json& number) {
+    return number.is_null() ? std::numeric_limits<double>::infinity() : number.get<double>();
 }
 
 Json object_json(const TrueObject& object) {
@@ -103,7 +110,7 @@ SceneRecord scene_record_from_text(const std::string& text, const ModelLibrary& 
         for (const Json& p : json.at("pairs")) {
             record.pairs.push_back({below(p.at("report"), record.reports.size()),
                                     below(p.at("truth"), record.truth.size()), p.at("adi"),
-                                    p.at("mssd"), p.at("mspd"), p.at("degrees"),
+                                    p.at("mssd"), error_from(p.at("mspd")), p.at("degrees"),
                                     p.at("vsd").get<std::vector<double>>()});
         }
         if (record.clutter.size() != record.truth.size()) {
