@@ -120,15 +120,18 @@ std::optional<Vec3f> parse_viewpoint(const std::string& text) {
     return Vec3d(numbers.data()).cast<float>();
 }
 
-void write_json(const Json& json, const std::string& path) {
+void write_text(const std::string& text, const std::string& path) {
     if (path.empty()) return;
-    const std::string text = json.dump(2) + "\n";
     if (path == "-") {
         std::cout << text << std::flush;
         if (!std::cout) throw FileError("standard output", "can't be written");
     } else {
         write_file_atomically(path, text);
     }
+}
+
+void write_json(const Json& json, const std::string& path) {
+    if (!path.empty()) write_text(json.dump(2) + "\n", path);
 }
 
 Json coverage_json(const BuildCounts& counts) {

@@ -49,6 +49,8 @@ std::optional<Vec3f> parse_viewpoint(const std::string& text);
 std::vector<double> parse_numbers(const std::string& text, const std::string& option);
 
 /// Prints to standard output for "-", else writes the file; nothing for an empty path.
+void write_text(const std::string& text, const std::string& path);
+/// The same of JSON, indented.
 void write_json(const Json& json, const std::string& path);
 /// Share of likely observations that some entry overlaps by at least 0.5, 0.6, ... .
 Json coverage_json(const BuildCounts& counts);

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluate_output.hpp"
 
-#include <iostream>
-
-#include "ostraka/base/error.hpp"
 #include "ostraka/base/sha256.hpp"
 #include "ostraka/io/atomic_file.hpp"
 
@@ -45,12 +42,7 @@ void write_csv(const std::vector<std::vector<std::string>>& rows, const std::str
         }
         text += '\n';
     }
-    if (path == "-") {
-        std::cout << text << std::flush;
-        if (!std::cout) throw FileError("standard output", "can't be written");
-    } else {
-        write_file_atomically(path, text);
-    }
+    write_text(text, path);
 }
 
 Json interval_json(const Interval& interval) {

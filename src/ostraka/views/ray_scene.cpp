@@ -69,13 +69,20 @@ void add_instance(RTCScene scene, RTCScene model, const Pose& T_world_model) {
     rtcReleaseGeometry(instance);
 }
 
+#if OSTRAKA_EMBREE_MAJOR < 4
+RTCIntersectContext coherent_rays() {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return context;
+}
+#endif
+
 void intersect(RTCScene scene, const int* valid, RTCRayHit8* packet) {
 #if OSTRAKA_EMBREE_MAJOR >= 4
     rtcIntersect8(valid, scene, packet, nullptr);
 #else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCIntersectContext context = coherent_rays();
     rtcIntersect8(valid, scene, &context, packet);
 #endif
 }
@@ -84,9 +91,7 @@ void occluded(RTCScene scene, const int* valid, RTCRay8* packet) {
 #if OSTRAKA_EMBREE_MAJOR >= 4
     rtcOccluded8(valid, scene, packet, nullptr);
 #else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCIntersectContext context = coherent_rays();
     rtcOccluded8(valid, scene, &context, packet);
 #endif
 }
