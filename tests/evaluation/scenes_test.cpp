@@ -257,6 +257,11 @@ TEST(AverageRecalls, ATrueObjectIsFoundOnceAndAllTargetsCount) {
     EXPECT_FALSE(recalls.has_vsd);
     EXPECT_NEAR(recalls.mssd, 0.25, 1e-12);
     EXPECT_EQ(average_recalls({}).mssd, 0.0);
+    // Three targets found at all thresholds: 1, not a rounded sum of thirtieths.
+    record.truth.push_back(truth_at(0, 80.0, 0.9));
+    record.reports.push_back(report_at(0, 80.0, 0.7));
+    record.pairs = {errors(0, 0, 0.0, -1.0), errors(1, 1, 0.0, -1.0), errors(2, 2, 0.0, -1.0)};
+    EXPECT_EQ(average_recalls(std::vector<SceneRecord>{record}).mssd, 1.0);
 }
 
 }  // namespace

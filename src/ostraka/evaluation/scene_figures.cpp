@@ -206,9 +206,8 @@ AverageRecalls average_recalls(std::span<const SceneRecord> records) {
     for (const SceneRecord& record : records) {
         const double pixels = record.image_width / 640.0;
         for (int i = 0; i < kThresholds; ++i) {
-            const double share = 1.0 / (targets * kThresholds);
             const auto count = [&](const auto& error, double limit) {
-                return share * static_cast<double>(found_targets(record, error, limit));
+                return static_cast<double>(found_targets(record, error, limit));
             };
             recalls.mssd += count([](const PosePair& p) { return p.mssd; }, threshold(i));
             if (recalls.has_images) {
@@ -219,10 +218,14 @@ AverageRecalls average_recalls(std::span<const SceneRecord> records) {
                 const auto error = [&](const PosePair& p) {
                     return p.vsd.size() > tau ? p.vsd[tau] : 1.0;
                 };
-                recalls.vsd += count(error, threshold(i)) / kThresholds;
+                recalls.vsd += count(error, threshold(i));
             }
         }
     }
+    // Whole numbers up to here: finding everything gives exactly 1.
+    recalls.mssd /= targets * kThresholds;
+    recalls.mspd /= targets * kThresholds;
+    recalls.vsd /= targets * kThresholds * kThresholds;
     return recalls;
 }
 
