@@ -50,6 +50,7 @@ int run(int argc, char** argv) {
     app::add_parts(app);
     app::add_simulate(app);
     app::add_evaluate(app);
+    app::add_advise(app);
     if (names_no_command(app, argc, argv)) {
         return fail(fmt::format("there is no command {}; see ostraka --help", argv[1]),
                     app::kUsage);
