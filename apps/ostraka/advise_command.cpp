@@ -144,6 +144,14 @@ Json look_alikes_json(const Advice& advice) {
     return array;
 }
 
+Json confirmation_json(const Confirmation& made) {
+    if (!made.made) return nullptr;
+    return {{"small", interval_json(made.small)},
+            {"usual", interval_json(made.usual)},
+            {"loss", interval_json(made.loss)},
+            {"kept", made.kept}};
+}
+
 Json advice_json(const AdviseOptions& options, const Advice& advice, const std::string& command) {
     Json names = Json::array();
     for (const PartAdvice& part : advice.parts) names.push_back(part.name);
@@ -167,6 +175,7 @@ Json advice_json(const AdviseOptions& options, const Advice& advice, const std::
             {"segments", advice.segments},
             {"trials", trials_json(advice.trials, advice.chosen)},
             {"descriptor_trials", trials_json(advice.descriptor_trials, advice.chosen_descriptors)},
+            {"confirmation", confirmation_json(advice.confirmation)},
             {"warnings", advice.warnings},
             {"command", command}};
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ostraka/base/error.hpp"
@@ -77,7 +78,7 @@ TEST(DefaultDistances, AreWithinTheSensorsRangeAndShowEnoughOfTheParts) {
         }
     }
     EXPECT_EQ(default_distances(preset("structured-light-fine"), diameters),
-              (std::vector<double>{0.7 * 700.0, 700.0, 1.4 * 700.0}));
+              (std::vector<double>{490.0, 700.0, 980.0}));
 }
 
 SettingsTrial trial(std::uint64_t bytes, double low, double value) {

@@ -24,10 +24,19 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-// To two digits, toward `value`s that are still within a limit.
-double two_digits(double value, bool up) {
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-    return unit * (up ? std::ceil(value / unit - 1e-9) : std::floor(value / unit + 1e-9));
+// To so many digits.
+template <class Round>
+double digits(double value, int count, const Round& round) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - count + 1.0);
+    // Dividing by a whole number gives the decimal number nearest to it.
+    return unit < 1.0 ? round(value / unit) / std::round(1.0 / unit) : unit * round(value / unit);
+}
+// What is whole but for rounding stays.
+double up(double value) {
+    return std::ceil(value - 1e-9);
+}
+double down(double value) {
+    return std::floor(value + 1e-9);
 }
 
 void require_usable(std::span<const ModelSource> models, const AdviceSettings& settings) {
@@ -97,9 +106,9 @@ std::vector<double> default_distances(const SensorPreset& sensor,
     const double middle = std::clamp(sensor.distance, near, far);
     std::vector<double> distances;
     for (const double wish : {kNearer * middle, middle, kFarther * middle}) {
-        double distance = wish;
-        if (wish <= near) distance = two_digits(near, true);
-        if (wish >= far) distance = two_digits(far, false);
+        double distance = digits(wish, 3, [](double x) { return std::round(x); });
+        if (wish <= near) distance = digits(near, 2, up);
+        if (wish >= far) distance = digits(far, 2, down);
         if (distances.empty() || distance > 1.05 * distances.back()) distances.push_back(distance);
     }
     return distances;
@@ -135,8 +144,12 @@ Advice advise(std::span<const ModelSource> models, const AdviceSettings& setting
     advice.sampling = advise_sampling(settings.sensor, middle, diameters);
     AdviceSettings complete = settings;
     if (complete.library.sampling == 0.0) complete.library.sampling = advice.sampling.sampling;
-    const ModelLibrary library = choose_library(models, complete, middle, advice, progress);
-    try_heaps(library, complete, distances, advice, progress);
+    HeapRecords known;
+    const ModelLibrary library =
+        confirm_library(choose_library(models, complete, middle, advice, progress), complete,
+                        middle, advice, known, progress);
+    advice.library = library.settings;
+    try_heaps(library, complete, distances, std::move(known), advice, progress);
     advice.look_alikes = look_alikes(library, complete, middle, progress);
     add_warnings(advice, complete, diameters);
     return advice;

@@ -25,7 +25,7 @@ struct AdviceSettings {
                                     ///< empty: default_distances()
     int scenes = 12;                ///< heaps a distance
     int objects = 8;                ///< dropped in each heap
-    int segment_scenes = 16;        ///< scenes of protocol S, on which settings are compared
+    int segment_scenes = 24;        ///< scenes of protocol S, on which settings are compared
     int viewpoints = 20;            ///< around each part, for what looks alike: as ViewSettings
     bool compare = true;      ///< try several settings; else the library is made as `library` says
     bool pictures = true;     ///< draw examples and pairs of parts that look alike
@@ -79,6 +79,17 @@ struct SettingsTrial {
 /// least 1. @return its index; ties: the earlier one.
 std::size_t cheapest_good(std::span<const SettingsTrial> trials);
 
+/// The smallest good library against the usual one (first sampling distance, budget 48, all
+/// descriptors) in the same heaps at the middle distance. Segments are few and not the whole job.
+struct Confirmation {
+    bool made = false;  ///< false: there was nothing to compare
+    Interval small;     ///< recall with the smallest good library
+    Interval usual;     ///< recall with the usual one
+    Interval loss;      ///< usual - small, on the same objects
+    bool kept = true;   ///< the small one is recommended: it loses less than kMostLoss
+};
+inline constexpr double kMostLoss = 0.03;
+
 /// All parts at one distance.
 struct DistanceAdvice {
     SensorReach reach;
@@ -126,11 +137,12 @@ struct Advice {
     std::size_t chosen = 0;                        ///< of trials
     std::vector<SettingsTrial> descriptor_trials;  ///< of the chosen one: all, then each alone
     std::size_t chosen_descriptors = 0;            ///< of descriptor_trials
-    std::size_t segments = 0;                      ///< that the trials rest on
-    LibrarySettings library;                       ///< recommended: all below rests on it
-    std::vector<double> confusion;                 ///< as confusion_matrix(), all distances
-    std::vector<LookAlike> look_alikes;            ///< one a part
-    std::vector<std::string> warnings;             ///< a sentence each
+    Confirmation confirmation;
+    std::size_t segments = 0;            ///< that the trials rest on
+    LibrarySettings library;             ///< recommended: all below rests on it
+    std::vector<double> confusion;       ///< as confusion_matrix(), all distances
+    std::vector<LookAlike> look_alikes;  ///< one a part
+    std::vector<std::string> warnings;   ///< a sentence each
 };
 
 /// @param models  distinct names; meshes in settings.library.unit.

@@ -23,26 +23,6 @@ constexpr double kDense = 0.35;      // side of the square the objects fall in, 
 constexpr int kPlaces = 3;      // tried for each object: few make a heap, in which much is hidden
 constexpr double kTable = 5.0;  // its side, in mean diameters
 
-TestSet heaps_at(const ModelLibrary& library, const AdviceSettings& settings, double distance,
-                 std::size_t number) {
-    double diameter = 0.0;
-    for (const Model& model : library.models) diameter += model.shape.diameter;
-    diameter /= static_cast<double>(library.models.size());
-    DropScenes recipe{.objects = settings.objects,
-                      .min_elevation = 0.5,
-                      .max_elevation = 1.3,
-                      .distance = distance / diameter,
-                      .table_size = kTable,
-                      .camera = settings.sensor.camera,
-                      .sensor = settings.sensor.model,
-                      // Heaps of their own at each distance: what is pooled is independent.
-                      .seed = settings.seed + 1000003 * number};
-    recipe.drop.area = kDense * std::sqrt(static_cast<double>(settings.objects));
-    recipe.drop.positions = kPlaces;
-    recipe.sensor.ranging.seed = recipe.seed;
-    return simulated_set(library, recipe, static_cast<std::size_t>(settings.scenes));
-}
-
 // The records with only one part's objects counting: others are as if hidden.
 std::vector<SceneRecord> records_of_part(std::span<const SceneRecord> records, std::uint32_t part) {
     std::vector<SceneRecord> own(records.begin(), records.end());
@@ -52,6 +32,19 @@ std::vector<SceneRecord> records_of_part(std::span<const SceneRecord> records, s
         }
     }
     return own;
+}
+
+// A heap's records at all distances as one, because intervals draw heaps.
+void append(SceneRecord& heap, const SceneRecord& record) {
+    const auto reports = static_cast<std::uint32_t>(heap.reports.size());
+    const auto truths = static_cast<std::uint32_t>(heap.truth.size());
+    heap.truth.insert(heap.truth.end(), record.truth.begin(), record.truth.end());
+    heap.reports.insert(heap.reports.end(), record.reports.begin(), record.reports.end());
+    for (PosePair pair : record.pairs) {
+        pair.report += reports;
+        pair.truth += truths;
+        heap.pairs.push_back(pair);
+    }
 }
 
 // The scene whose recall is most like that of all.
@@ -89,7 +82,7 @@ void draw_example(DistanceAdvice& at, std::span<const SceneRecord> records, cons
 void add_part(PartAdvice& part, std::uint32_t number,
               const std::vector<std::vector<SceneRecord>>& by_distance, const ModelLibrary& library,
               const AdviceSettings& settings, Advice& advice) {
-    std::vector<SceneRecord> all;
+    std::vector<SceneRecord> heaps(by_distance.front().size());
     for (std::size_t d = 0; d < by_distance.size(); ++d) {
         const SensorReach& reach = advice.distances[d].reach;
         const std::vector<SceneRecord> own = records_of_part(by_distance[d], number);
@@ -103,9 +96,9 @@ void add_part(PartAdvice& part, std::uint32_t number,
                 part.wrong += record.reports[w].model_index == number ? 1U : 0U;
             }
         }
-        all.insert(all.end(), own.begin(), own.end());
+        for (std::size_t s = 0; s < own.size(); ++s) append(heaps[s], own[s]);
     }
-    part.by_hidden = recall_by_occlusion(all, library, settings.match, kQuarters);
+    part.by_hidden = recall_by_occlusion(heaps, library, settings.match, kQuarters);
 }
 
 struct Count {
@@ -127,7 +120,46 @@ std::string how_well(double overall, int quarters) {
     return "hardly ever found";
 }
 
+// How many quarters of hidden share, from the first, hold enough objects that are nearly all found.
+int reliable_quarters(std::span<const Count> hidden) {
+    int quarters = 0;
+    for (const Count& count : hidden) {
+        if (count.objects < kEnough || count.rate() < kReliable) break;
+        ++quarters;
+    }
+    return quarters;
+}
+
 }  // namespace
+
+TestSet heaps_at(const ModelLibrary& library, const AdviceSettings& settings, double distance) {
+    double diameter = 0.0;
+    for (const Model& model : library.models) diameter += model.shape.diameter;
+    diameter /= static_cast<double>(library.models.size());
+    DropScenes recipe{.objects = settings.objects,
+                      .min_elevation = 0.5,
+                      .max_elevation = 1.3,
+                      .distance = distance / diameter,
+                      .table_size = kTable,
+                      .camera = settings.sensor.camera,
+                      .sensor = settings.sensor.model,
+                      .seed = settings.seed};
+    recipe.drop.area = kDense * std::sqrt(static_cast<double>(settings.objects));
+    recipe.drop.positions = kPlaces;
+    recipe.sensor.ranging.seed = recipe.seed;
+    return simulated_set(library, recipe, static_cast<std::size_t>(settings.scenes));
+}
+
+std::vector<SceneRecord> recognize_heaps(const ModelLibrary& library,
+                                         const AdviceSettings& settings, double distance,
+                                         const std::string& stage, const Progress& progress) {
+    const Recognizer recognizer(library);
+    Journal journal("", "");
+    return run_scenes(recognizer, library, heaps_at(library, settings, distance), {}, journal,
+                      [&](std::string_view, std::size_t done, std::size_t total) {
+                          return !progress || progress(stage, done, total);
+                      });
+}
 
 void judge_part(PartAdvice& part, Unit unit, std::span<const std::string> names,
                 std::span<const double> taken_for) {
@@ -155,11 +187,7 @@ void judge_part(PartAdvice& part, Unit unit, std::span<const std::string> names,
         part.verdict = "never visible enough to be judged: more scenes are needed";
         return;
     }
-    int quarters = 0;
-    while (quarters < kQuarters && hidden[static_cast<std::size_t>(quarters)].objects >= kEnough &&
-           hidden[static_cast<std::size_t>(quarters)].rate() >= kReliable) {
-        ++quarters;
-    }
+    const int quarters = reliable_quarters(hidden);
     const double overall = all.rate();
     part.outlook = overall < 0.5                     ? Outlook::bad
                    : quarters >= 2 || overall >= 0.9 ? Outlook::good
@@ -180,23 +208,23 @@ void judge_part(PartAdvice& part, Unit unit, std::span<const std::string> names,
 }
 
 void try_heaps(const ModelLibrary& library, const AdviceSettings& settings,
-               std::span<const double> distances, Advice& advice, const Progress& progress) {
-    const Recognizer recognizer(library);
+               std::span<const double> distances, HeapRecords known, Advice& advice,
+               const Progress& progress) {
     std::vector<std::vector<SceneRecord>> by_distance;
     std::vector<SceneRecord> all;
-    Journal journal("", "");
-    for (std::size_t d = 0; d < distances.size(); ++d) {
-        const std::string stage =
-            fmt::format("{:.4g} {}", distances[d], unit_name(settings.library.unit));
-        const TestSet set = heaps_at(library, settings, distances[d], d);
-        by_distance.push_back(
-            run_scenes(recognizer, library, set, {}, journal,
-                       [&](std::string_view, std::size_t done, std::size_t total) {
-                           return !progress || progress(stage, done, total);
-                       }));
-        DistanceAdvice at{.reach = sensor_reach(settings.sensor, distances[d])};
+    for (const double distance : distances) {
+        if (!known.contains(distance)) {
+            known[distance] = recognize_heaps(
+                library, settings, distance,
+                fmt::format("{:.4g} {}", distance, unit_name(settings.library.unit)), progress);
+        }
+        by_distance.push_back(std::move(known[distance]));
+        DistanceAdvice at{.reach = sensor_reach(settings.sensor, distance)};
         at.summary = summarize(by_distance.back(), library, settings.match);
-        if (settings.pictures) draw_example(at, by_distance.back(), set, library, settings);
+        if (settings.pictures) {
+            draw_example(at, by_distance.back(), heaps_at(library, settings, distance), library,
+                         settings);
+        }
         advice.distances.push_back(std::move(at));
         all.insert(all.end(), by_distance.back().begin(), by_distance.back().end());
     }

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kCoarser = 1.5;  // the second sampling distance, in the first
 constexpr int kBudgets[] = {24, 48, 96};
+constexpr std::size_t kUsual = 1;  // of settings_to_try(): the first sampling distance and 48
 
 std::vector<std::string> names_of(const std::vector<AnyDescriptor>& descriptors) {
     std::vector<std::string> names;
@@ -116,8 +117,8 @@ std::size_t cheapest_good(std::span<const SettingsTrial> trials) {
     return chosen;
 }
 
-ModelLibrary choose_library(std::span<const ModelSource> models, const AdviceSettings& settings,
-                            double distance, Advice& advice, const Progress& progress) {
+Candidates choose_library(std::span<const ModelSource> models, const AdviceSettings& settings,
+                          double distance, Advice& advice, const Progress& progress) {
     const std::vector<LibrarySettings> to_try = settings_to_try(settings);
     std::vector<ModelLibrary> libraries;
     for (std::size_t i = 0; i < to_try.size(); ++i) {
@@ -132,12 +133,15 @@ ModelLibrary choose_library(std::span<const ModelSource> models, const AdviceSet
     advice.segments =
         try_libraries(libraries, settings, distance, advice.trials, "segments", progress);
     advice.chosen = cheapest_good(advice.trials);
-    ModelLibrary chosen = std::move(libraries[advice.chosen]);
+    Candidates candidates{std::move(libraries[advice.chosen]), std::nullopt};
+    if (settings.compare && advice.chosen != kUsual) {
+        candidates.usual = std::move(libraries[kUsual]);
+    }
     libraries.clear();
-    if (settings.compare && chosen.tables.size() > 1) {
-        libraries.push_back(chosen);
-        for (std::size_t t = 0; t < chosen.tables.size(); ++t) {
-            libraries.push_back(with_descriptor(chosen, t));
+    if (settings.compare && candidates.small.tables.size() > 1) {
+        libraries.push_back(candidates.small);
+        for (std::size_t t = 0; t < candidates.small.tables.size(); ++t) {
+            libraries.push_back(with_descriptor(candidates.small, t));
         }
         for (const ModelLibrary& library : libraries) {
             advice.descriptor_trials.push_back(trial_of(library, -1.0));
@@ -145,10 +149,37 @@ ModelLibrary choose_library(std::span<const ModelSource> models, const AdviceSet
         try_libraries(libraries, settings, distance, advice.descriptor_trials, "descriptors",
                       progress);
         advice.chosen_descriptors = cheapest_good(advice.descriptor_trials);
-        chosen = std::move(libraries[advice.chosen_descriptors]);
+        if (advice.chosen_descriptors > 0) {
+            if (!candidates.usual) candidates.usual = std::move(candidates.small);
+            candidates.small = std::move(libraries[advice.chosen_descriptors]);
+        }
     }
-    advice.library = chosen.settings;
-    return chosen;
+    return candidates;
+}
+
+ModelLibrary confirm_library(Candidates candidates, const AdviceSettings& settings, double distance,
+                             Advice& advice, HeapRecords& known, const Progress& progress) {
+    if (!candidates.usual) return std::move(candidates.small);
+    std::vector<SceneRecord> small =
+        recognize_heaps(candidates.small, settings, distance, "small library", progress);
+    std::vector<SceneRecord> usual =
+        recognize_heaps(*candidates.usual, settings, distance, "usual library", progress);
+    Confirmation& confirmation = advice.confirmation;
+    confirmation.made = true;
+    confirmation.small = summarize(small, candidates.small, settings.match).recall;
+    confirmation.usual = summarize(usual, *candidates.usual, settings.match).recall;
+    std::vector<double> more;
+    std::vector<double> objects;
+    for (std::size_t s = 0; s < small.size(); ++s) {
+        const Matching a = match(small[s], candidates.small, settings.match);
+        const Matching b = match(usual[s], *candidates.usual, settings.match);
+        more.push_back(static_cast<double>(b.hits.size()) - static_cast<double>(a.hits.size()));
+        objects.push_back(static_cast<double>(a.hits.size() + a.misses.size()));
+    }
+    confirmation.loss = bootstrap_ratio(more, objects);
+    confirmation.kept = confirmation.loss.value < kMostLoss;
+    known[distance] = confirmation.kept ? std::move(small) : std::move(usual);
+    return confirmation.kept ? std::move(candidates.small) : std::move(*candidates.usual);
 }
 
 }  // namespace ostraka
