@@ -88,7 +88,7 @@ TEST(Recognize, NoiseOfAQuarterOfTheSamplingDistanceIsForgiven) {
     TabletopSettings settings;
     settings.spacing = 1.4;
     settings.min_elevation = 0.7;
-    settings.sensor.noise = 0.25 * library().settings.sampling;
+    settings.sensor.ranging.noise = 0.25 * library().settings.sampling;
     const std::vector<std::uint32_t> chosen = {kPlate, kCorner};
     const SimulatedScene scene = simulate_tabletop(models(), chosen, 4, settings);
     expect_all(recognize(library(), scene.cloud), scene);
@@ -215,7 +215,7 @@ TEST(Recognize, ReportsNothingWhereNoModelIs) {
     const PlacedModel placed{0, Pose::Identity()};
     for (const double noise : {0.0, 0.5}) {
         SceneView view{.T_camera_world = look_at(Vec3d(350, -350, 400), Vec3d(-300, 300, 0))};
-        view.sensor.noise = noise;
+        view.sensor.ranging.noise = noise;
         const SimulatedScene scene = simulate_scene(rooms, {&placed, 1}, view);
         EXPECT_EQ(names(recognizer.recognize(scene.cloud)), "") << noise;
     }

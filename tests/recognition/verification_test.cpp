@@ -98,7 +98,7 @@ TEST(Verify, AFaceLaidIntoAWallIsNotBelieved) {
     const PlacedModel placed{0, Pose::Identity()};
     for (const double noise : {0.0, 0.5}) {
         SceneView view{.T_camera_world = look_at(Vec3d(100, -150, 380), Vec3d::Zero())};
-        view.sensor.noise = noise;
+        view.sensor.ranging.noise = noise;
         const SimulatedScene scene = simulate_scene(walls, {&placed, 1}, view);
         // No table is looked for: a wall may be too small for one.
         const Scan scan = prepare_scan(scene.cloud, library().settings.sampling, 1000.0, {});
