@@ -16,7 +16,8 @@
 namespace ostraka {
 namespace {
 
-constexpr double kCoarser = 1.5;  // the second sampling distance, in the first
+constexpr double kCoarser = 1.5;    // the second sampling distance, in the first
+constexpr double kLeastStep = 1.1;  // less isn't worth a trial
 constexpr int kBudgets[] = {24, 48, 96};
 constexpr std::size_t kUsual = 1;  // of settings_to_try(): the first sampling distance and 48
 
@@ -46,13 +47,18 @@ SettingsTrial trial_of(const ModelLibrary& library, double seconds) {
             .build_seconds = seconds};
 }
 
-std::vector<LibrarySettings> settings_to_try(const AdviceSettings& settings) {
+// @param most  sampling distance that the smallest part allows.
+std::vector<LibrarySettings> settings_to_try(const AdviceSettings& settings, double most) {
     std::vector<LibrarySettings> all;
     if (!settings.compare) return {settings.library};
-    for (const double factor : {1.0, kCoarser}) {
+    const double first = settings.library.sampling;
+    std::vector<double> samplings = {first};
+    const double second = std::min(kCoarser * first, most);
+    if (second > kLeastStep * first) samplings.push_back(second);
+    for (const double sampling : samplings) {
         for (const int budget : kBudgets) {
             all.push_back(settings.library);
-            all.back().sampling *= factor;
+            all.back().sampling = sampling;
             all.back().selection.budget = budget;
         }
     }
@@ -119,7 +125,7 @@ std::size_t cheapest_good(std::span<const SettingsTrial> trials) {
 
 Candidates choose_library(std::span<const ModelSource> models, const AdviceSettings& settings,
                           double distance, Advice& advice, const Progress& progress) {
-    const std::vector<LibrarySettings> to_try = settings_to_try(settings);
+    const std::vector<LibrarySettings> to_try = settings_to_try(settings, advice.sampling.most);
     std::vector<ModelLibrary> libraries;
     for (std::size_t i = 0; i < to_try.size(); ++i) {
         const std::string stage = fmt::format("library {} of {}", i + 1, to_try.size());

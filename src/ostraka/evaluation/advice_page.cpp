@@ -94,20 +94,19 @@ void add_facts(PageContent& page, const Advice& advice, Unit unit) {
          fmt::format("{} of {} in heaps; 95 % interval {}", middle.summary.hits,
                      middle.summary.objects, percent_range(middle.summary.recall))},
         {percent(middle.summary.precision.value), "of reports right there",
-         fmt::format("{} wrong reports", middle.summary.wrong)},
+         fmt::format("wrong reports: {}", middle.summary.wrong)},
         {length(advice.library.sampling, unit), "sampling distance that suits",
-         fmt::format("{} entries a part, {} descriptors", advice.library.selection.budget,
+         fmt::format("entries a part: {}; descriptors: {}", advice.library.selection.budget,
                      advice.library.descriptors.size())}});
 }
 
 void add_verdicts(PageContent& page, const Advice& advice, Unit unit) {
-    Table table{.header = {"part", "verdict", "diameter", "objects tried"}, .text_columns = 2};
+    Table table{.header = {"part", "verdict", "objects"}, .text_columns = 2};
     for (const PartAdvice& part : advice.parts) {
         std::size_t objects = 0;
         for (const RecallBin& bin : part.by_distance) objects += bin.objects;
         table.rows.push_back(
-            {{part.name, part.verdict, length(part.diameter, unit), std::to_string(objects)},
-             status_of(part.outlook)});
+            {{part.name, part.verdict, std::to_string(objects)}, status_of(part.outlook)});
     }
     page.table(table);
     for (const std::string& warning : advice.warnings) page.paragraph("Warning: " + warning);
@@ -312,11 +311,13 @@ void add_settings(PageContent& page, const Advice& advice, Unit unit, const std:
 
 void add_details(PageContent& page, const Advice& advice, Unit unit) {
     PageContent inner;
-    Table table{.header = {"part", "distance", "pixels across", kQuarterNames[0], kQuarterNames[1],
-                           kQuarterNames[2], kQuarterNames[3], "all", "95 % interval"}};
+    Table table{.header = {"part", "diameter", "distance", "pixels across", kQuarterNames[0],
+                           kQuarterNames[1], kQuarterNames[2], kQuarterNames[3], "all",
+                           "95 % interval"}};
     for (const PartAdvice& part : advice.parts) {
         for (std::size_t d = 0; d < part.by_distance.size(); ++d) {
-            TableRow row{{part.name, distance_text(part.by_distance[d].low, unit),
+            TableRow row{{part.name, length(part.diameter, unit),
+                          distance_text(part.by_distance[d].low, unit),
                           fmt::format("{:.0f}", part.pixels[d])}};
             for (const RecallBin& bin : part.by_both[d]) row.cells.push_back(found_text(bin));
             row.cells.push_back(found_text(part.by_distance[d]));
