@@ -261,7 +261,7 @@ void add_advise(CLI::App& app) {
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
     command->add_flag("--quick", options->quick,
-                      "a first impression in half a minute: a small library, few scenes, settings "
+                      "a first impression in about a minute: a small library, few scenes, settings "
                       "by rule only");
     command->add_option("--seed", options->settings.seed, "seed of every random step")
         ->capture_default_str();

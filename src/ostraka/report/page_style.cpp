@@ -45,7 +45,7 @@ font-variant-numeric:tabular-nums}
 table{border-collapse:collapse;font-size:14.5px;font-variant-numeric:tabular-nums lining-nums}
 caption{text-align:left;font-weight:600;padding-bottom:8px;font-size:14px}
 th,td{padding:7px 0 7px 22px;text-align:right;vertical-align:baseline;font-weight:400;white-space:nowrap}
-th:first-child{padding-left:10px;text-align:left;min-width:7em;overflow-wrap:anywhere;white-space:normal}
+th:first-child{padding-left:10px;text-align:left;min-width:7em;overflow-wrap:break-word;white-space:normal}
 th:last-child,td:last-child{padding-right:10px}
 td:first-child{padding-left:10px}
 th.text,td.text{text-align:left;white-space:normal}
