@@ -161,11 +161,11 @@ Table seconds_table(std::span<const SceneRecord> records) {
 }
 
 Image draw(const TestScene& scene, const ModelLibrary& library,
-           std::vector<RecognizedObject> objects, int width) {
+           std::vector<RecognizedObject> objects, int width, bool words) {
     Recognition shown;
     shown.objects = std::move(objects);
     return draw_recognition(scene.cloud, library, shown,
-                            {.width = width, .labels = !shown.objects.empty(), .header = false});
+                            {.width = width, .labels = words, .header = false});
 }
 
 std::vector<RecognizedObject> truth_as_objects(const SceneRecord& record,
@@ -228,10 +228,10 @@ void add_failures(PageContent& page, std::span<const SceneRecord> records, const
         page.paragraph(failure_text(record, match(record, library, settings.match), library));
         const int width = settings.picture_width;
         page.pictures(std::vector<Picture>{
-            {draw(scene, library, {}, width), "scan", "the scan of " + record.name},
-            {draw(scene, library, truth_as_objects(record, library), width),
+            {draw(scene, library, {}, width, false), "scan", "the scan of " + record.name},
+            {draw(scene, library, truth_as_objects(record, library), width, true),
              "truth; numbers are visible shares", "the true objects of " + record.name},
-            {draw(scene, library, reports, width), "answer; numbers are confidences",
+            {draw(scene, library, reports, width, true), "answer; numbers are confidences",
              "the reported objects of " + record.name}});
     }
 }

@@ -291,7 +291,7 @@ Image draw_recognition(const PointCloud& scene, const ModelLibrary& library,
     }
     if (settings.header) draw_header(image, scene, library, recognition, layout);
     if (settings.labels) draw_labels(image, recognition, layers, scan, camera.scan, layout);
-    if (recognition.objects.empty()) {
+    if (recognition.objects.empty() && (settings.header || settings.labels)) {
         const bool measured = std::any_of(scan.depth.begin(), scan.depth.end(),
                                           [](float depth) { return depth > 0.0F; });
         draw_notice(image, camera.scan,

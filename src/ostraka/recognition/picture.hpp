@@ -11,7 +11,8 @@ struct PictureSettings {
     int width = 1280;        ///< pixels, 320 to 8192; the height follows from the scan
     double tolerance = 2.5;  ///< sampling distances between model and scan that count as agreement
     bool labels = true;      ///< name and confidence of each object
-    bool header = true;      ///< a line at the top that says how many were found
+    bool header = true;      ///< a line at the top that says how many were found; without it and
+                             ///< labels there are no words at all
 };
 
 /// The scan as its sensor saw it, in gray. Each object has a color (object_color() of its place in
