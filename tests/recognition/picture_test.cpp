@@ -369,11 +369,14 @@ std::size_t count_bright_text(const Image& image) {
         std::count(image.pixels.begin(), image.pixels.end(), Color{240, 242, 246}));
 }
 
-TEST(Picture, SaysWhenNothingWasFound) {
+TEST(Picture, SaysWhenNothingWasFoundUnlessWordsAreUnwanted) {
     const PointCloud scene = scan(false);
     PictureSettings settings = bare();
+    EXPECT_LT(count_bright_text(draw_recognition(scene, sphere_library(), {}, settings)), 5U);
+    settings.labels = true;
     const Image nothing = draw_recognition(scene, sphere_library(), {}, settings);
     EXPECT_GT(count_bright_text(nothing), 50U);
+    settings.labels = false;
     const Recognition one = found({Vec3d(0.0, 0.0, kDistance)});
     EXPECT_LT(count_bright_text(draw_recognition(scene, sphere_library(), one, settings)), 5U);
 }
