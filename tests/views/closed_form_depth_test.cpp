@@ -10,6 +10,7 @@
 
 #include "mesh/test_meshes.hpp"
 #include "ostraka/views/render.hpp"
+#include "views/ray_oracle.hpp"
 
 namespace ostraka {
 namespace {
@@ -246,7 +247,7 @@ TEST(ClosedFormDepth, OfASphereWithinItsTessellation) {
 }
 
 // The nearest crossing of a segment with triangles, 0 to 1 along it; `edge`: how near to an edge of
-// some triangle the segment passes. Moeller, Trumbore 1997, in double precision.
+// some triangle the segment passes.
 struct Crossing {
     bool hidden = false;
     bool unclear = false;  // rounding may decide either way
@@ -256,17 +257,7 @@ Crossing crossing(const TriangleMesh& mesh, const Vec3d& eye, const Vec3d& point
     Crossing result;
     const Vec3d direction = point - eye;
     for (const Triangle& triangle : mesh.triangles) {
-        const Vec3d a = mesh.vertices[triangle[0]].cast<double>();
-        const Vec3d ab = mesh.vertices[triangle[1]].cast<double>() - a;
-        const Vec3d ac = mesh.vertices[triangle[2]].cast<double>() - a;
-        const Vec3d p = direction.cross(ac);
-        const double determinant = ab.dot(p);
-        const Vec3d from = eye - a;
-        const double u = from.dot(p) / determinant;
-        const Vec3d q = from.cross(ab);
-        const double v = direction.dot(q) / determinant;
-        const double t = ac.dot(q) / determinant;
-        const double edge = std::min({u, v, 1.0 - u - v});
+        const auto [t, edge] = testing::ray_oracle(mesh, triangle, eye, direction);
         if (edge < -1e-5 || t < margin * 0.9 || t > 1.0 - margin * 0.9) continue;
         if (edge < 1e-5 || t < margin * 1.1 || t > 1.0 - margin * 1.1) {
             result.unclear = true;

@@ -9,6 +9,7 @@
 
 #include "mesh/test_meshes.hpp"
 #include "ostraka/base/parallel.hpp"
+#include "views/ray_oracle.hpp"
 
 namespace ostraka {
 namespace {
@@ -17,23 +18,13 @@ RayHit cast_one(const RayScene& scene, const Vec3d& origin, const Vec3d& directi
     return scene.cast(origin, std::vector<Vec3d>{direction}).front();
 }
 
-// Moeller, Trumbore 1997, in double precision; infinity if the ray misses. `edge` is how far inside
-// the hit is: the least barycentric coordinate.
+// Infinity if the ray misses. `edge`: see OracleHit.
 double oracle(const TriangleMesh& mesh, const Triangle& triangle, const Vec3d& origin,
               const Vec3d& direction, double& edge) {
-    const Vec3d a = mesh.vertices[triangle[0]].cast<double>();
-    const Vec3d ab = mesh.vertices[triangle[1]].cast<double>() - a;
-    const Vec3d ac = mesh.vertices[triangle[2]].cast<double>() - a;
-    const Vec3d p = direction.cross(ac);
-    const double determinant = ab.dot(p);
-    const Vec3d from = origin - a;
-    const double u = from.dot(p) / determinant;
-    const Vec3d q = from.cross(ab);
-    const double v = direction.dot(q) / determinant;
-    const double distance = ac.dot(q) / determinant;
-    edge = std::min({u, v, 1.0 - u - v});
-    const bool hit = edge >= 0.0 && distance > 0.0;
-    return hit ? distance : std::numeric_limits<double>::infinity();
+    const testing::OracleHit hit = testing::ray_oracle(mesh, triangle, origin, direction);
+    edge = hit.edge;
+    const bool hits = hit.edge >= 0.0 && hit.distance > 0.0;
+    return hits ? hit.distance : std::numeric_limits<double>::infinity();
 }
 
 TEST(RayScene, AgreesWithMoellerTrumboreOnRandomTriangles) {
