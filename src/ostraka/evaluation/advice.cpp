@@ -8,6 +8,7 @@
 
 #include "ostraka/base/error.hpp"
 #include "ostraka/evaluation/advice_steps.hpp"
+#include "ostraka/evaluation/intervals.hpp"
 
 namespace ostraka {
 namespace {
@@ -18,11 +19,6 @@ constexpr double kSmoothingRadius = 4.0;  // RangeSmoothingSettings::max_radius
 constexpr double kHeapDiameters = 2.6;    // width of a heap
 constexpr double kNearer = 0.7;           // distances beside the usual one
 constexpr double kFarther = 1.4;
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 // To so many digits.
 template <class Round>

@@ -5,18 +5,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <vector>
 
 #include "ostraka/base/random.hpp"
 
 namespace ostraka {
 namespace {
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 // `value` of the items as they are, and of `draws` samples of as many items with repetition; NaN
 // where it isn't defined.
@@ -56,6 +49,13 @@ Interval bootstrap_ratio(std::span<const double> parts, std::span<const double> 
     };
     if (parts.empty()) return {};
     return resample(parts.size(), seed, draws, ratio);
+}
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
 Interval bootstrap_median(std::span<const double> values, std::uint64_t seed, int draws) {

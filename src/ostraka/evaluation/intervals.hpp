@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace ostraka {
 
@@ -21,6 +22,9 @@ struct Interval {
 /// @return zeros if the wholes sum to 0. The same for the same numbers and seed.
 Interval bootstrap_ratio(std::span<const double> parts, std::span<const double> wholes,
                          std::uint64_t seed = 0, int draws = 2000);
+
+/// The middle value, the upper one of two; 0 if there are none.
+double median(std::vector<double> values);
 
 /// The median of values with a 95 % interval. @return zeros if there are none.
 Interval bootstrap_median(std::span<const double> values, std::uint64_t seed = 0, int draws = 2000);

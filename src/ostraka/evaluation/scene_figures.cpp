@@ -8,12 +8,6 @@
 namespace ostraka {
 namespace {
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
-
 // Recall by a number that each true object has.
 template <class Of>
 std::vector<RecallBin> recall_by(std::span<const SceneRecord> records, const ModelLibrary& library,
