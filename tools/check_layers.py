@@ -29,14 +29,16 @@ MODULES = {
     "registration": ["base", "cloud"],
     "views": ["base", "cloud", "mesh"],
     "subparts": ["base", "cloud"],
+    "segmentation": ["base", "cloud"],
     "descriptors": ["base", "cloud"],
     "library": ["base", "cloud", "mesh", "io", "registration", "views", "subparts", "descriptors"],
     "recognition": ["base", "cloud", "mesh", "io", "registration", "views", "subparts",
-                    "descriptors", "library"],
+                    "segmentation", "descriptors", "library"],
     "simulation": ["base", "cloud", "mesh", "io", "views"],
     "report": ["base", "cloud", "mesh", "io"],
     "evaluation": ["base", "cloud", "mesh", "io", "registration", "views", "subparts",
-                   "descriptors", "library", "recognition", "simulation", "report"],
+                   "segmentation", "descriptors", "library", "recognition", "simulation",
+                   "report"],
 }
 
 # Library -> (how its headers' names begin, modules that may use it; None: all of them).
