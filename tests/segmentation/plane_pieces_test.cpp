@@ -129,6 +129,30 @@ TEST(FindPlanes, AreConnectedPieces) {
     EXPECT_LT(pieces[1].T_cloud_piece.translation().x(), -5.0);
 }
 
+// Two squares in one plane and a bridge between them, 4 wide, whose normals are tilted.
+PointCloud bridged_squares(float tilt) {
+    PointCloud cloud;
+    cloud.viewpoint = Vec3f(0, 0, 100);
+    for (int x = -18; x <= 18; ++x) {
+        for (int y = -6; y <= 6; ++y) {
+            const bool bridge = std::abs(x) < 5;
+            if (bridge && (y < 0 || y > 3)) continue;
+            cloud.points.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.0F);
+            cloud.normals.emplace_back(0.0F, bridge ? std::sin(tilt) : 0.0F,
+                                       bridge ? std::cos(tilt) : 1.0F);
+        }
+    }
+    return cloud;
+}
+
+TEST(FindPlanes, AreOneWherePointsConnectThemThoughPatchesDoNot) {
+    EXPECT_EQ(find_planes(bridged_squares(0.0F), kUnit).size(), 1U);
+    const auto pieces = find_planes(bridged_squares(0.35F), kUnit);
+    ASSERT_EQ(pieces.size(), 1U) << "as blended as normals at an edge";
+    EXPECT_NEAR(pieces[0].extents.x(), 36.0, 1e-3);
+    EXPECT_EQ(find_planes(bridged_squares(0.7F), kUnit).size(), 2U);
+}
+
 TEST(FindPlanes, NormalsPointToTheViewpoint) {
     PointCloud cloud = scan({box({20, 12, 8}, {0, 0, 0})}, {0, 0, 250}, 0.1).cloud;
     ASSERT_EQ(find_planes(cloud, kUnit).size(), 1U);

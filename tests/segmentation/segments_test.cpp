@@ -40,12 +40,13 @@ std::vector<std::uint32_t> common(const Segment& a, const Segment& b) {
 }
 
 TEST(SegmentHierarchy, HoldsEveryObjectAndEveryPile) {
+    const std::vector<Segment> segments = all_segments();
     std::vector<std::vector<std::uint32_t>> sets;
-    for (const Segment& segment : all_segments()) sets.push_back(segment.indices);
+    for (const Segment& segment : segments) sets.push_back(segment.indices);
     for (std::uint32_t s = 0; s < 4; ++s) {
         EXPECT_GT(test_scans::best_agreement(heap(), s, sets), 0.9) << s;
     }
-    const Segment& pile = all_segments().front();
+    const Segment& pile = segments.front();
     EXPECT_EQ(pile.kind, SegmentKind::cluster);
     EXPECT_TRUE(std::all_of(pile.indices.begin(), pile.indices.end(),
                             [](std::uint32_t i) { return heap().solid[i] < 2; }));
