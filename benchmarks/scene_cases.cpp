@@ -31,7 +31,7 @@ usage: bench_scenes LIBRARY.ostraka | MESH... [OPTIONS]
   --data-unit U    of a data set that doesn't state its own
   --peers LIST     open3d, opencv, both or none [open3d,opencv]
   --opencv-step X  between OpenCV's points, in model diagonals: finer is better and slower to
-                   train [0.05]
+                   train [0.04]
   --threads N      of every method; 0: all cores [1]
   --seed N         of the scenes and the methods [0]
   --no-build       don't build the library again to see how long that takes

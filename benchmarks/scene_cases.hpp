@@ -23,7 +23,7 @@ struct SceneCases {
     int threads = 1;     // of every method
     int width = 0;       // of the image; 0: the camera's own
     double noise = 0.0;  // standard deviation of depth, library unit
-    double opencv_step = 0.05;
+    double opencv_step = 0.04;
     std::uint64_t seed = 0;
     bool time_build = true;
     bool help = false;

@@ -13,7 +13,7 @@ namespace ostraka::bench {
 
 struct PeerSettings {
     int threads = 1;
-    double opencv_step = 0.05;  ///< between OpenCV's points, in model diameters
+    double opencv_step = 0.04;  ///< between OpenCV's points, in model diameters
     std::uint64_t seed = 0;
 };
 
