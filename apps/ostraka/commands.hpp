@@ -8,6 +8,7 @@ namespace ostraka::app {
 
 void add_advise(CLI::App& app);
 void add_build(CLI::App& app);
+void add_calibrate(CLI::App& app);
 void add_recognize(CLI::App& app);
 void add_classify(CLI::App& app);
 void add_describe(CLI::App& app);

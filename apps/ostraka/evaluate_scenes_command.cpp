@@ -20,6 +20,7 @@ struct RunOptions {
     EvaluationOutput output;
     SceneOptions scenes;
     std::string library;
+    std::string scenes_of;    // library whose models the scenes show; empty: the same
     std::string results;      // BOP CSV to judge instead of recognizing
     std::string bop_results;  // BOP CSV to write
     MatchSettings match;
@@ -256,13 +257,25 @@ void say_summary(const RunOptions& options, const std::vector<SceneRecord>& reco
     say(text);
 }
 
+TestSet set_of(const RunOptions& options, const ModelLibrary& library) {
+    if (options.scenes_of.empty()) return test_set_of(options.scenes, library);
+    // A set may need its library as long as it lives.
+    const auto kept = std::make_shared<const ModelLibrary>(load_library(options.scenes_of));
+    if (kept->settings.unit != library.settings.unit) {
+        throw InvalidInput(options.scenes_of + ": its unit is not the library's");
+    }
+    TestSet set = for_library(test_set_of(options.scenes, *kept), *kept, library);
+    set.load = [kept, load = std::move(set.load)](std::size_t i) { return load(i); };
+    return set;
+}
+
 void run_evaluate_scenes(RunOptions& options, bool pose) {
     catch_interrupts();
     options.settings.vsd = pose;
     options.settings.recognition.min_confidence =
         std::min(kLeastConfidence, options.match.min_confidence);
     const ModelLibrary library = load_library(options.library);
-    const TestSet set = test_set_of(options.scenes, library);
+    const TestSet set = set_of(options, library);
     const std::string protocol = pose ? "pose" : "scenes";
     std::vector<SceneRecord> records;
     if (!options.results.empty()) {
@@ -295,6 +308,9 @@ void add_run(CLI::App& parent, const std::string& name, const std::string& help,
     add_scene_kind(*command, options->scenes);
     add_scene_options(*command, options->scenes, "the library's unit");
     add_scene_noise(*command, options->scenes, "the library's unit");
+    command->add_option("--scenes-of", options->scenes_of,
+                        "make the scenes from this library's models instead: those that LIBRARY "
+                        "lacks are unknown to it, and whatever it reports there is wrong");
     command
         ->add_option("--max-adi", options->match.max_adi,
                      "pose error of a right detection, in model diameters")

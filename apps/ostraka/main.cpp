@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
     app::add_classify(app);
     app::add_describe(app);
     app::add_edit(app);
+    app::add_calibrate(app);
     app::add_inspect(app);
     app::add_verify(app);
     app::add_export(app);

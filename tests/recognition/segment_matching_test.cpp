@@ -42,15 +42,17 @@ TEST(SegmentScan, ObjectsApartAreTheFirstSegments) {
     EXPECT_EQ(owners, (std::vector<std::uint32_t>{0, 1}));
 }
 
-TEST(SegmentScan, HoldsForegroundOnlyAndNoSmallPieces) {
-    const Scan scan = prepared(tabletop({kCorner, kPlate}, 4));
+TEST(SegmentScan, HoldsWhatIsNotExplainedAndNoSmallPieces) {
+    Scan scan = prepared(tabletop({kCorner, kPlate}, 4));
+    scan.explained.assign(scan.cloud.size(), 0);
+    std::fill_n(scan.explained.begin(), scan.cloud.size() / 3, char{1});
     const auto segments = segment_scan(scan, 60);
     EXPECT_LE(segments.size(), 60U);
     for (const auto& segment : segments) {
         EXPECT_GE(segment.size(), 60U);
         EXPECT_TRUE(std::is_sorted(segment.begin(), segment.end()));
-        EXPECT_TRUE(std::includes(scan.foreground.begin(), scan.foreground.end(), segment.begin(),
-                                  segment.end()));
+        EXPECT_TRUE(std::none_of(segment.begin(), segment.end(),
+                                 [&](std::uint32_t i) { return scan.explained[i] != 0; }));
     }
     for (std::size_t s = 1; s < segments.size(); ++s) EXPECT_NE(segments[s], segments[s - 1]);
 }

@@ -2,8 +2,8 @@
 #include "ostraka/recognition/verification.hpp"
 
 #include <algorithm>
-#include <numeric>
 
+#include "ostraka/recognition/confidence.hpp"
 #include "recognition/recognition_testing.hpp"
 
 namespace ostraka {
@@ -12,8 +12,11 @@ namespace {
 using namespace recognition_testing;
 
 Verified verify_at(const Scan& scan, std::uint32_t model, const Pose& T_scene_model) {
-    return verify(scan, probe(model), {.model = model, .T_scene_model = T_scene_model},
-                  tolerance());
+    Verified v =
+        verify(scan, probe(model), {.model = model, .T_scene_model = T_scene_model}, tolerance());
+    v.confidence =
+        too_small(v) ? 0.0 : general_confidence().confidence(features_of(v, scan, tolerance()));
+    return v;
 }
 
 TEST(Verify, TheTruthIsConfidentAndAsVisibleAsItIs) {
@@ -22,7 +25,8 @@ TEST(Verify, TheTruthIsConfidentAndAsVisibleAsItIs) {
         const Scan scan = prepared(scene);
         for (const TrueObject& object : scene.objects) {
             const Verified v = verify_at(scan, object.model, object.T_scene_model);
-            EXPECT_EQ(v.silhouette, v.support + v.hidden + v.violation + v.missing);
+            EXPECT_EQ(v.silhouette,
+                      v.support + v.hidden + v.violation + v.backdrop + v.missing + v.unsure);
             EXPECT_EQ(v.cells.size(), v.support);
             EXPECT_TRUE(std::is_sorted(v.cells.begin(), v.cells.end()));
             EXPECT_GT(v.confidence, 0.9);
@@ -100,8 +104,8 @@ TEST(Verify, AFaceLaidIntoAWallIsNotBelieved) {
         SceneView view{.T_camera_world = look_at(Vec3d(100, -150, 380), Vec3d::Zero())};
         view.sensor.ranging.noise = noise;
         const SimulatedScene scene = simulate_scene(walls, {&placed, 1}, view);
-        // No table is looked for: a wall may be too small for one.
-        const Scan scan = prepare_scan(scene.cloud, library().settings.sampling, 1000.0, {});
+        const double sampling = library().settings.sampling;
+        const Scan scan = prepare_scan(scene.cloud, sampling, 1000.0, {.remove_plane = false});
         ASSERT_FALSE(scan.table);
         Pose T_wall_plate = Pose::Identity();  // its flat underside is the wall's surface
         T_wall_plate.linear() = Vec3d(1.0, -1.0, -1.0).asDiagonal();
@@ -109,52 +113,13 @@ TEST(Verify, AFaceLaidIntoAWallIsNotBelieved) {
         EXPECT_GT(v.visible_fraction, 0.8);
         EXPECT_GT(v.open, 0.8);
         EXPECT_LT(v.confidence, 0.1);
+        // The wall is too large to be the plate's, though no larger than the largest model.
+        const Scan with_backdrop = prepare_scan(scene.cloud, sampling, 1000.0, {});
+        const Verified w =
+            verify_at(with_backdrop, kPlate, scene.objects[0].T_scene_model * T_wall_plate);
+        EXPECT_GT(w.backdrop, w.silhouette * 8 / 10);
+        EXPECT_LT(w.confidence, 0.01);
     }
-}
-
-// A candidate that explains the cells from `first` to `last`.
-Verified candidate(double confidence, std::uint32_t first, std::uint32_t last) {
-    Verified v;
-    v.confidence = confidence;
-    v.cells.resize(last - first);
-    std::iota(v.cells.begin(), v.cells.end(), first);
-    v.support = v.cells.size();
-    return v;
-}
-
-std::vector<double> confidences(const std::vector<Verified>& chosen) {
-    std::vector<double> values;
-    for (const Verified& v : chosen) values.push_back(v.confidence);
-    return values;
-}
-
-TEST(Choose, KeepsTheBestOfThoseThatExplainTheSame) {
-    const auto chosen = choose({candidate(0.7, 0, 100), candidate(0.9, 10, 110),
-                                candidate(0.8, 500, 600), candidate(0.6, 520, 640)},
-                               0.5);
-    EXPECT_EQ(confidences(chosen), (std::vector<double>{0.9, 0.8}));
-}
-
-TEST(Choose, ToleratesALittleOverlap) {
-    const auto chosen = choose({candidate(0.9, 0, 100), candidate(0.8, 80, 180)}, 0.5);
-    EXPECT_EQ(chosen.size(), 2U);
-}
-
-TEST(Choose, OverlapsAddUp) {
-    const auto chosen = choose({candidate(0.9, 0, 100), candidate(0.8, 200, 300),
-                                candidate(0.7, 80, 220)},  // 20 and 20 of 140
-                               0.5);
-    EXPECT_EQ(chosen.size(), 3U);
-    const auto fewer = choose({candidate(0.9, 0, 100), candidate(0.8, 200, 300),
-                               candidate(0.7, 60, 240)},  // 40 and 40 of 180
-                              0.5);
-    EXPECT_EQ(fewer.size(), 2U);
-}
-
-TEST(Choose, LeavesOutWhatIsBelowTheThreshold) {
-    EXPECT_TRUE(choose({candidate(0.49, 0, 100)}, 0.5).empty());
-    EXPECT_EQ(choose({candidate(0.5, 0, 100)}, 0.5).size(), 1U);
-    EXPECT_TRUE(choose({}, 0.5).empty());
 }
 
 }  // namespace

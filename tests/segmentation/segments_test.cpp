@@ -17,7 +17,7 @@ namespace {
 using test_scans::box;
 using test_scans::scan;
 
-const SegmentSettings kUnit{.patches = {.sampling = 1.0}};
+const SegmentationSettings kUnit{.patches = {.sampling = 1.0}};
 
 // A box on a box, a ball on a third box, apart from each other.
 const test_scans::Scan& heap() {
@@ -28,7 +28,7 @@ const test_scans::Scan& heap() {
     return seen;
 }
 
-std::vector<Segment> all_segments(const SegmentSettings& settings = kUnit) {
+std::vector<Segment> all_segments(const SegmentationSettings& settings = kUnit) {
     return segment_hierarchy(heap().cloud, test_scans::all_of(heap().cloud.size()), settings);
 }
 
@@ -97,7 +97,7 @@ TEST(SegmentHierarchy, HoldsNothingTwice) {
                 << s << " " << t;
         }
     }
-    SegmentSettings lenient = kUnit;
+    SegmentationSettings lenient = kUnit;
     lenient.same = 1.0;
     EXPECT_GT(all_segments(lenient).size(), segments.size()) << "there is something to drop";
 }
@@ -137,7 +137,7 @@ TEST(SegmentHierarchy, CutsOnlyTheForeground) {
 }
 
 TEST(SegmentHierarchy, IsBounded) {
-    SegmentSettings few = kUnit;
+    SegmentationSettings few = kUnit;
     few.max_of_kind = 1;
     const auto segments = all_segments(few);
     EXPECT_EQ(std::count_if(segments.begin(), segments.end(),
@@ -172,7 +172,7 @@ TEST(SegmentHierarchy, TakesEmptyInvalidAndSinglePoints) {
     cloud.normals = {{0, 0, 1}, {0, 0, 1}};
     const std::vector<std::uint32_t> both = {0, 1};
     EXPECT_TRUE(segment_hierarchy(cloud, both, kUnit).empty());
-    SegmentSettings tiny = kUnit;
+    SegmentationSettings tiny = kUnit;
     tiny.min_points = 1;
     const auto segments = segment_hierarchy(cloud, both, tiny);
     ASSERT_EQ(segments.size(), 1U);
@@ -181,7 +181,7 @@ TEST(SegmentHierarchy, TakesEmptyInvalidAndSinglePoints) {
     const std::vector<std::uint32_t> beyond = {2};
     EXPECT_THROW(segment_hierarchy(cloud, beyond, kUnit), InvalidInput);
     EXPECT_THROW(segment_hierarchy(cloud, both, {}), InvalidInput) << "no sampling";
-    SegmentSettings narrow = kUnit;
+    SegmentationSettings narrow = kUnit;
     narrow.gap = 1.0;
     EXPECT_THROW(segment_hierarchy(cloud, both, narrow), InvalidInput);
 }

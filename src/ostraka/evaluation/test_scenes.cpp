@@ -135,6 +135,37 @@ TestSet simulated_set(const ModelLibrary& library, const SceneRecipe& recipe, st
     return set;
 }
 
+TestSet for_library(TestSet set, const ModelLibrary& from, const ModelLibrary& to) {
+    std::vector<std::uint32_t> number(from.models.size(), kNoIndex);
+    for (std::size_t i = 0; i < from.models.size(); ++i) {
+        for (std::uint32_t k = 0; k < to.models.size(); ++k) {
+            if (to.models[k].name == from.models[i].name) number[i] = k;
+        }
+    }
+    const auto known = std::count_if(number.begin(), number.end(),
+                                     [](std::uint32_t index) { return index != kNoIndex; });
+    if (known == 0) throw InvalidInput("the scenes show none of the library's models");
+    set.description +=
+        fmt::format(", {} of {} models are in the library", known, from.models.size());
+    set.load = [load = std::move(set.load), number](std::size_t i) {
+        TestScene scene = load(i);
+        std::vector<std::uint32_t> place(scene.objects.size(), kNoIndex);
+        std::vector<TrueObject> objects;
+        for (std::size_t k = 0; k < scene.objects.size(); ++k) {
+            if (number[scene.objects[k].model] == kNoIndex) continue;
+            place[k] = static_cast<std::uint32_t>(objects.size());
+            objects.push_back(scene.objects[k]);
+            objects.back().model = number[scene.objects[k].model];
+        }
+        for (std::uint32_t& label : scene.labels) {
+            if (label != kNoIndex) label = place[label];
+        }
+        scene.objects = std::move(objects);
+        return scene;
+    };
+    return set;
+}
+
 TestSet recorded_set(const DataSet& data, const ModelLibrary& library, std::optional<Unit> unit) {
     const double factor = factor_of(data, library, unit);
     const std::vector<std::uint32_t> indices = models_in(data, names_of(library));

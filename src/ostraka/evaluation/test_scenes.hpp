@@ -37,6 +37,11 @@ struct TestSet {
 /// @param count  scenes; fewer if the recipe has a limit.
 TestSet simulated_set(const ModelLibrary& library, const SceneRecipe& recipe, std::size_t count);
 
+/// The same scenes for another library. Objects whose model it lacks (by name) stay in the scans
+/// but not in the truth: whatever is reported there is wrong.
+/// @param from  the library that the set's models are counted by. @param to  must outlive the set.
+TestSet for_library(TestSet set, const ModelLibrary& from, const ModelLibrary& to);
+
 /// A data set's scans. Objects whose model is not in the library (by its name) are left out, and
 /// noted. Labels: the object whose placed surface is nearest, within one sampling distance. Where
 /// the set doesn't state how much of an object is visible, 1 is assumed.

@@ -161,6 +161,13 @@ void rename_model(const fs::path& library, const std::string& from, const std::s
     transaction.commit();
 }
 
+void set_confidence(const fs::path& library, const ConfidenceModel& confidence) {
+    LibraryStore store = open_for_editing(library);
+    Transaction transaction(store.database());
+    store.put_confidence(confidence);
+    transaction.commit();
+}
+
 std::size_t index_keypoints(const fs::path& library) {
     LibraryStore store = open_for_editing(library);
     Transaction transaction(store.database());

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ostraka/base/progress.hpp"
+#include "ostraka/library/confidence_model.hpp"
 #include "ostraka/library/model_source.hpp"
 
 namespace ostraka {
@@ -35,6 +36,10 @@ void remove_models(const std::filesystem::path& library, std::span<const std::st
 /// @throws InvalidInput if there is no model of the old name, or the new one is empty or taken.
 void rename_model(const std::filesystem::path& library, const std::string& from,
                   const std::string& to);
+
+/// Stores how a library's own models are to be judged (calibrate_confidence()). What changes the
+/// models later makes it void. @throws as remove_models().
+void set_confidence(const std::filesystem::path& library, const ConfidenceModel& confidence);
 
 /// Builds a graph of all models' keypoint rows and stores it, so that scans are matched with the
 /// nearest rows only (keypoint_index.hpp): faster from some dozens of models on, and approximate. A

@@ -154,6 +154,7 @@ ModelLibrary load_library(const std::filesystem::path& path) {
     ModelLibrary library = load_store(store);
     store.load_bags(library);
     store.load_graph(library);
+    store.load_confidence(library);
     if (library.models.empty()) throw FormatError(path, "library", "it has no models");
     return library;
 }
@@ -186,10 +187,12 @@ LibraryCheck verify_library(const std::filesystem::path& path, const Progress& p
         }
         check_models(store, check, progress);
         check.sha256 = content_digest(store);
-        if ((store.has_bags() || store.has_graph()) && check.problems.empty()) {
+        if ((store.has_bags() || store.has_graph() || store.has_confidence()) &&
+            check.problems.empty()) {
             ModelLibrary library = load_store(store);
             store.load_bags(library);
             store.load_graph(library);
+            store.load_confidence(library);
         }
     } catch (const FormatError& error) {
         check.problems.emplace_back(error.what());

@@ -66,6 +66,12 @@ class LibraryStore {
     /// Leaves the library without one where the file has none, or models have changed since.
     /// @param library  joined of all records. @throws FormatError if it is damaged.
     void load_graph(ModelLibrary& library);
+    bool has_confidence();
+    /// Stores what was fitted to the models that are in the file now.
+    void put_confidence(const ConfidenceModel& confidence);
+    /// Leaves the library without where the file has none, models have changed since, or it was
+    /// fitted to other features than today's. @throws FormatError if it is damaged.
+    void load_confidence(ModelLibrary& library);
     /// Brings the checksums up to date.
     void seal();
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "ostraka/base/unit.hpp"
 #include "ostraka/cloud/principal_frame.hpp"
 #include "ostraka/descriptors/bag_of_words.hpp"
+#include "ostraka/library/confidence_model.hpp"
 #include "ostraka/library/library_settings.hpp"
 #include "ostraka/library/neighbor_graph.hpp"
 #include "ostraka/library/spread.hpp"
@@ -83,6 +85,7 @@ struct ModelLibrary {
     Codebook codebook;             ///< of the models' keypoint rows (bags.hpp); may have no words
     NeighborGraph keypoint_graph;  ///< of all_keypoint_rows(); empty: exact search
     std::vector<float> bags;       ///< entries x codebook.size(): its words in each entry, sum 1
+    std::optional<ConfidenceModel> confidence;  ///< fitted to these models; none: the general one
 };
 
 /// The keypoint rows of all models, one after another in their order.

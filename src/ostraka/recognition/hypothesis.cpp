@@ -1,14 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/recognition/hypothesis.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include "ostraka/recognition/cell_check.hpp"
 
 namespace ostraka {
 namespace {
 
-constexpr float kMinAgreement = 0.7F;  // cosine between the normals of model and scan
-constexpr float kMinSlope = 0.3F;      // cosine of incidence below which tolerance grows no further
+void count(const CellCheck& check, float tolerance, Evidence& evidence) {
+    switch (check.verdict) {
+        case CellVerdict::support: {
+            const float ratio = check.off / tolerance;
+            evidence.fit += double{1.0F - ratio * ratio};
+            ++evidence.support;
+            break;
+        }
+        case CellVerdict::hidden:
+            ++evidence.hidden;
+            break;
+        case CellVerdict::violation:
+        case CellVerdict::backdrop:
+            ++evidence.violation;
+            break;
+        case CellVerdict::missing:
+            ++evidence.missing;
+            break;
+        case CellVerdict::unsure:
+        case CellVerdict::taken:
+        case CellVerdict::outside:
+            ++evidence.unsure;
+            break;
+    }
+}
+
+// Support by what another object explains is none.
+CellCheck check_free_cell(const Scan& scan, std::uint32_t cell, const SurfacePiece& piece,
+                          float tolerance, float largest) {
+    CellCheck check = check_cell(scan, cell, piece, tolerance, largest);
+    const bool taken = check.verdict == CellVerdict::support && !scan.explained.empty() &&
+                       scan.explained[scan.ranges[cell].point];
+    if (taken) check.verdict = CellVerdict::taken;
+    return check;
+}
 
 }  // namespace
 
@@ -17,7 +49,7 @@ std::string_view source_name(HypothesisSource source) {
 }
 
 Evidence gather_evidence(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
-                         double tolerance) {
+                         double tolerance, std::size_t samples) {
     const Mat3f R = T_scene_model.linear().cast<float>();
     const Vec3f t = T_scene_model.translation().cast<float>();
     const Vec3f eye = scan.ranges.viewpoint();
@@ -25,41 +57,27 @@ Evidence gather_evidence(const Scan& scan, const ModelProbe& probe, const Pose& 
     const auto limit = static_cast<float>(tolerance);
     const Vec3f up = scan.table ? Vec3f(scan.table->normal.cast<float>()) : Vec3f::Zero();
     const float ground = scan.table ? static_cast<float>(scan.table->offset) - 2.0F * limit : 0.0F;
+    const auto largest = static_cast<float>(probe.model().shape.diameter);
     Evidence evidence;
-    for (std::size_t i = 0; i < probe.samples().size(); ++i) {
+    for (std::size_t i = 0; i < std::min(samples, probe.samples().size()); ++i) {
         if (!visible[i]) continue;
         ++evidence.visible;
-        const Vec3f point = R * probe.samples()[i] + t;
-        if (scan.table && up.dot(point) < ground) ++evidence.sunk;
-        const std::uint32_t index = scan.ranges.cell_of(point);
-        if (index == kNoIndex || !scan.ranges[index].measured()) {
-            ++evidence.missing;
-            continue;
-        }
-        const RangeCell& cell = scan.ranges[index];
-        const Vec3f normal = R * probe.normals()[i];
-        const Vec3f ray = point - eye;
-        const float range = ray.norm();
-        const float slope = std::max(kMinSlope, -normal.dot(ray) / range);
-        const float slack = limit / slope;
-        if (range > cell.far + slack) {
-            ++evidence.hidden;
-        } else if (range < cell.near - slack) {
-            ++evidence.violation;
-        } else if (cell.point != kNoIndex &&
-                   normal.dot(scan.cloud.normals[cell.point]) < kMinAgreement) {
-            ++evidence.violation;
-        } else {
-            ++evidence.support;
-        }
+        SurfacePiece piece{R * probe.samples()[i] + t, R * probe.normals()[i]};
+        if (scan.table && up.dot(piece.point) < ground) ++evidence.sunk;
+        const Vec3f ray = piece.point - eye;
+        piece.range = ray.norm();
+        piece.slope = -piece.normal.dot(ray) / piece.range;
+        count(check_free_cell(scan, scan.ranges.cell_of(piece.point), piece, limit, largest), limit,
+              evidence);
     }
+    evidence.samples = static_cast<int>(samples);
     return evidence;
 }
 
 double quick_score(const Evidence& evidence) {
-    return (evidence.support - 1.0 * evidence.violation - 0.5 * evidence.missing -
+    return (evidence.fit - 1.0 * evidence.violation - 0.5 * evidence.missing -
             0.5 * evidence.sunk) /
-           static_cast<double>(kProbeSamples);
+           static_cast<double>(evidence.samples);
 }
 
 }  // namespace ostraka

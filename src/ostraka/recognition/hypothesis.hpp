@@ -21,23 +21,27 @@ struct Hypothesis {
 };
 
 /// What the sensor should see of a placed model against what it measured: counts of surface
-/// samples.
+/// samples (cell_check.hpp).
 struct Evidence {
     int visible = 0;  ///< samples that face the sensor and that the model itself doesn't hide
-    int support = 0;  ///< the scan has surface there that faces the same way
-    int hidden = 0;   ///< the scan has surface in front: occluded
-    int violation =
-        0;  ///< the scan saw through it: surface lies behind, or beside with another normal
-    int missing = 0;  ///< nothing was measured in that direction
-    int sunk = 0;     ///< of the hidden ones, those below the table
+    int support = 0;
+    int hidden = 0;
+    int violation = 0;  ///< contradicted, or claimed by what is a backdrop
+    int missing = 0;
+    int unsure = 0;
+    int sunk = 0;                                   ///< of the visible ones, those below the table
+    int samples = static_cast<int>(kProbeSamples);  ///< that were looked at
+    double fit = 0.0;  ///< of the supported ones: 1 for each that fits exactly, 0 at the tolerance
 };
 
 /// Looks each visible sample of the placed model up in the range map: about 5 microseconds.
+/// Where an object that was found already explains the scan, support doesn't count.
 /// @param tolerance  distance along the normal that counts as agreement, in the scan's unit.
+/// @param samples  so many of the probe's; the first ones are evenly spread, too.
 Evidence gather_evidence(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
-                         double tolerance);
+                         double tolerance, std::size_t samples = kProbeSamples);
 
-/// Support less contradiction, as a share of all samples: the measure by which poses of a model are
+/// Fit less contradiction, as a share of all samples: the measure by which poses of a model are
 /// ranked. About -1 to 0.5.
 double quick_score(const Evidence& evidence);
 

@@ -19,11 +19,9 @@ std::vector<std::vector<Correspondence>> match_keypoints(const Scan& scan,
                                                          const LibrarySettings& library,
                                                          const KeypointIndex& index,
                                                          const RecognitionSettings& settings) {
-    // The support leaves the table out, as the library's views have none.
-    const PointCloud foreground = select(scan.cloud, scan.foreground);
     const auto most = static_cast<std::size_t>(std::max(1, settings.max_keypoints));
     auto matches =
-        index.match(scene_keypoints(foreground, library, settings.keypoint_spacing, most));
+        index.match(scene_keypoints(scan.cloud, library, settings.keypoint_spacing, most));
     for (auto& of_model : matches) {
         std::erase_if(of_model, [](const Correspondence& match) { return !match.matched(); });
         std::stable_sort(of_model.begin(), of_model.end(),

@@ -11,7 +11,7 @@
 
 namespace ostraka {
 
-/// For each model the best match of each keypoint of the scan's foreground, best first.
+/// For each model the best match of each keypoint of the scan, best first.
 std::vector<std::vector<Correspondence>> match_keypoints(const Scan& scan,
                                                          const LibrarySettings& library,
                                                          const KeypointIndex& index,

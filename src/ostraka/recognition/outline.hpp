@@ -7,18 +7,9 @@
 
 #include <span>
 
-#include "ostraka/recognition/scan.hpp"
+#include "ostraka/recognition/cell_check.hpp"
 
 namespace ostraka {
-
-/// What the scan says of a placed model in the direction of one cell of the range map.
-enum class CellVerdict : std::uint8_t {
-    outside,    ///< the model isn't there
-    support,    ///< the scan agrees, in distance and normal
-    hidden,     ///< something is in front
-    violation,  ///< the scan saw through, or the surface faces elsewhere
-    missing,    ///< nothing was measured
-};
 
 /// The share of the supported part's outline, against cells that are outside or hidden, where the
 /// scan shows one smooth surface on both sides: near 0 for an object, near 1 for a chance fit.

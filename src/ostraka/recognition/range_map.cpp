@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kMaxCells = 4e6;  // beyond it cells are made larger
 constexpr int kGapFillPasses = 2;
+constexpr float kSteady = 0.9F;  // cosine between the normals of neighboring cells
 
 Mat3f rotation_to(const Vec3d& forward) {
     return Mat3d(Eigen::Quaterniond::FromTwoVectors(forward, Eigen::Vector3d::UnitZ())
@@ -20,11 +21,13 @@ Mat3f rotation_to(const Vec3d& forward) {
 
 }  // namespace
 
-RangeMap::RangeMap(const PointCloud& raw, const PointCloud& resampled, double sampling)
+RangeMap::RangeMap(const PointCloud& raw, std::span<const float> wall_extents,
+                   const PointCloud& resampled, double sampling)
     : viewpoint_(raw.viewpoint) {
     std::vector<float> ranges;
     Vec3d forward = Vec3d::Zero();
-    for (const Vec3f& point : resampled.points) {
+    for (const Vec3f& point : raw.points) {
+        if (!point.allFinite()) continue;
         const Vec3f offset = point - viewpoint_;
         ranges.push_back(offset.norm());
         if (ranges.back() > 0.0F) forward += (offset / ranges.back()).cast<double>();
@@ -39,7 +42,8 @@ RangeMap::RangeMap(const PointCloud& raw, const PointCloud& resampled, double sa
     // Extent of the projection, in units where the focal length is 1.
     Vec2f low = Vec2f::Constant(1e9F);
     Vec2f high = Vec2f::Constant(-1e9F);
-    for (const Vec3f& point : resampled.points) {
+    for (const Vec3f& point : raw.points) {
+        if (!point.allFinite()) continue;
         const Vec3f offset = R_map_scene_ * (point - viewpoint_);
         const float depth = std::max(offset.norm() + offset.z(), 0.02F * offset.norm() + 1e-12F);
         const Vec2f at = Vec2f(offset.x(), offset.y()) / depth;
@@ -58,14 +62,15 @@ RangeMap::RangeMap(const PointCloud& raw, const PointCloud& resampled, double sa
     height_ = static_cast<std::uint32_t>(extent.y() * cells_per_radian_ + 2.0F * kBorder) + 1;
     cells_.resize(std::size_t{width_} * height_);
 
-    for (const Vec3f& point : raw.points) {
-        if (!point.allFinite()) continue;
-        const std::uint32_t index = cell_of(point);
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+        if (!raw.points[i].allFinite()) continue;
+        const std::uint32_t index = cell_of(raw.points[i]);
         if (index == kNoIndex) continue;
-        const float range = (point - viewpoint_).norm();
+        const float range = (raw.points[i] - viewpoint_).norm();
         RangeCell& cell = cells_[index];
         cell.near = cell.measured() ? std::min(cell.near, range) : range;
         cell.far = std::max(cell.far, range);
+        if (!wall_extents.empty()) cell.wall = std::max(cell.wall, wall_extents[i]);
     }
     for (std::uint32_t i = 0; i < resampled.size(); ++i) {
         const std::uint32_t index = cell_of(resampled.points[i]);
@@ -77,6 +82,29 @@ RangeMap::RangeMap(const PointCloud& raw, const PointCloud& resampled, double sa
         if (closer) cell.point = i;
     }
     fill_gaps();
+    look_around(resampled);
+}
+
+// What a cell shows may as well be seen a cell beside it, as rays and points don't coincide.
+void RangeMap::look_around(const PointCloud& resampled) {
+    if (width_ < 3 || height_ < 3) return;
+    for (std::uint32_t v = 1; v + 1 < height_; ++v) {
+        for (std::uint32_t u = 1; u + 1 < width_; ++u) look_around(resampled, u, v);
+    }
+}
+
+void RangeMap::look_around(const PointCloud& resampled, std::uint32_t u, std::uint32_t v) {
+    RangeCell& cell = cells_[v * width_ + u];
+    cell.steady = cell.point != kNoIndex && !resampled.normals.empty();
+    for (std::uint32_t n = 0; n < 9; ++n) {
+        const RangeCell& other = cells_[(v + n / 3 - 1) * width_ + u + n % 3 - 1];
+        if (other.measured()) {
+            cell.nearest_around =
+                cell.nearest_around > 0.0F ? std::min(cell.nearest_around, other.near) : other.near;
+        }
+        cell.steady = cell.steady && other.measured() && other.point != kNoIndex &&
+                      resampled.normals[cell.point].dot(resampled.normals[other.point]) > kSteady;
+    }
 }
 
 // Single empty cells between measured ones are sampling gaps, not free space; cells that no
@@ -104,7 +132,8 @@ void RangeMap::fill_gaps() {
                     cell.near = near;
                     cell.far = far;
                 }
-                if (cell.measured() && cell.point == kNoIndex) cell.point = point;
+                const bool may_borrow = cell.measured() && cell.wall == 0.0F;
+                if (may_borrow && cell.point == kNoIndex) cell.point = point;
             }
         }
         cells_ = std::move(filled);

@@ -4,6 +4,7 @@
 // sphere.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "ostraka/cloud/point_cloud.hpp"
@@ -14,17 +15,24 @@ namespace ostraka {
 struct RangeCell {
     float near = 0.0F;  ///< least distance from the viewpoint to a point; 0: nothing measured
     float far = 0.0F;   ///< greatest distance of such a point
+    float nearest_around = 0.0F;  ///< least `near` of this and the eight cells around it; 0: none
     std::uint32_t point =
-        kNoIndex;  ///< a point of the resampled cloud in or beside this cell, or kNoIndex
+        kNoIndex;         ///< a point of the resampled cloud in or beside this cell, or kNoIndex
+    float wall = 0.0F;    ///< extent of the wall or table that was seen here; 0: of none
+    bool steady = false;  ///< normals of this and the cells around it agree: they can be relied on
     bool measured() const { return near > 0.0F; }
 };
 
 class RangeMap {
   public:
     /// @param raw        the scan at its own density; invalid points are left out.
-    /// @param resampled  the same scan at the library's sampling distance; only points are used.
+    /// @param wall_extents  of each raw point: that of the wall or table it is on, or 0; or empty.
+    /// @param resampled  the same scan without walls and tables at the library's sampling distance;
+    /// without normals no cell
+    ///                   is steady.
     /// @param sampling   that distance: the side of a cell at the scan's median distance.
-    RangeMap(const PointCloud& raw, const PointCloud& resampled, double sampling);
+    RangeMap(const PointCloud& raw, std::span<const float> wall_extents,
+             const PointCloud& resampled, double sampling);
 
     /// The number of the cell that shows `point`, or kNoIndex outside the map.
     std::uint32_t cell_of(const Vec3f& point) const {
@@ -51,6 +59,8 @@ class RangeMap {
 
   private:
     void fill_gaps();
+    void look_around(const PointCloud& resampled);
+    void look_around(const PointCloud& resampled, std::uint32_t u, std::uint32_t v);
 
     Vec3f viewpoint_ = Vec3f::Zero();
     Mat3f R_map_scene_ = Mat3f::Identity();

@@ -7,10 +7,7 @@
 #include "ostraka/base/error.hpp"
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/base/stopwatch.hpp"
-#include "ostraka/recognition/keypoint_matching.hpp"
-#include "ostraka/recognition/refinement.hpp"
-#include "ostraka/recognition/segment_matching.hpp"
-#include "ostraka/recognition/verification.hpp"
+#include "ostraka/recognition/scene_search.hpp"
 
 namespace ostraka {
 namespace {
@@ -31,7 +28,8 @@ double largest_diameter(const ModelLibrary& library) {
     return largest;
 }
 
-RecognizedObject report_object(const Verified& verified, const ModelLibrary& library) {
+RecognizedObject report_object(const Judged& judged, const ModelLibrary& library) {
+    const Verified& verified = judged.verified;
     const Hypothesis& hypothesis = verified.hypothesis;
     return {.model = library.models[hypothesis.model].name,
             .model_index = hypothesis.model,
@@ -39,7 +37,9 @@ RecognizedObject report_object(const Verified& verified, const ModelLibrary& lib
             .confidence = verified.confidence,
             .visible_fraction = verified.visible_fraction,
             .inlier_rms = verified.inlier_rms,
-            .source = std::string(source_name(hypothesis.source))};
+            .source = std::string(source_name(hypothesis.source)),
+            .round = judged.round,
+            .features = judged.features};
 }
 
 }  // namespace
@@ -48,31 +48,6 @@ struct Recognizer::Implementation {
     explicit Implementation(const ModelLibrary& given)
         : library(given), index(given), probes(make_probes(given)) {
         if (given.models.empty()) throw InvalidInput("the library has no models");
-    }
-
-    // Hypotheses of every source, by model.
-    std::vector<std::vector<Hypothesis>> propose(const Scan& scan,
-                                                 const RecognitionSettings& settings,
-                                                 Recognition& result, Stopwatch& watch) const {
-        std::vector<std::vector<Hypothesis>> by_model(library.models.size());
-        if (settings.use_segments) {
-            for (const Hypothesis& h : hypotheses_from_segments(scan, index, settings)) {
-                by_model[h.model].push_back(h);
-            }
-            result.seconds["segments"] = watch.lap();
-        }
-        if (settings.use_keypoints) {
-            const auto matches =
-                match_keypoints(scan, library.settings, index.keypoints(), settings);
-            for (std::uint32_t m = 0; m < matches.size(); ++m) {
-                for (const Pose& pose : poses_from_matches(matches[m], 2.0 * scan.sampling)) {
-                    by_model[m].push_back(
-                        {.model = m, .T_scene_model = pose, .source = HypothesisSource::keypoints});
-                }
-            }
-            result.seconds["keypoints"] = watch.lap();
-        }
-        return by_model;
     }
 
     const ModelLibrary& library;
@@ -90,30 +65,27 @@ Recognition Recognizer::recognize(const PointCloud& scene,
                                   const RecognitionSettings& settings) const {
     const Implementation& self = *implementation_;
     Recognition result;
-    Stopwatch watch;
-    const Scan scan = prepare_scan(scene, self.library.settings.sampling,
-                                   largest_diameter(self.library), settings);
+    const Stopwatch watch;
+    Scan scan = prepare_scan(scene, self.library.settings.sampling, largest_diameter(self.library),
+                             settings);
     result.scan_points = scan.cloud.size();
     result.table_found = scan.table.has_value();
-    result.seconds["prepare"] = watch.lap();
+    const double prepared = watch.seconds();
+    if (scan.cloud.empty()) return result;  // nothing but a table
 
-    const auto proposed = self.propose(scan, settings, result, watch);
-    std::vector<Hypothesis> finalists;
-    for (std::size_t m = 0; m < proposed.size(); ++m) {
-        const auto best = refine_hypotheses(scan, self.probes[m], proposed[m], settings);
-        finalists.insert(finalists.end(), best.begin(), best.end());
+    SceneSearch search(self.index, self.probes, std::move(scan), settings, watch);
+    search.run();
+    for (const std::size_t i : search.explanation(settings.min_confidence)) {
+        result.objects.push_back(report_object(search.judged()[i], self.library));
     }
-    result.seconds["refine"] = watch.lap();
-
-    std::vector<Verified> verified(finalists.size());
-    parallel_for(finalists.size(), [&](std::size_t i) {
-        verified[i] = verify(scan, self.probes[finalists[i].model], finalists[i],
-                             settings.tolerance * scan.sampling);
-    });
-    for (const Verified& chosen : choose(std::move(verified), settings.min_confidence)) {
-        result.objects.push_back(report_object(chosen, self.library));
+    if (settings.keep_candidates) {
+        for (const Judged& one : search.judged()) {
+            result.candidates.push_back(report_object(one, self.library));
+        }
     }
-    result.seconds["verify"] = watch.lap();
+    result.seconds = search.seconds();
+    result.seconds["prepare"] = prepared;
+    result.out_of_time = search.out_of_time();
     return result;
 }
 

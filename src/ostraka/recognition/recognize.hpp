@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "ostraka/library/confidence_model.hpp"
 #include "ostraka/library/model_library.hpp"
 #include "ostraka/recognition/settings.hpp"
 
@@ -21,13 +22,18 @@ struct RecognizedObject {
         0.0;  ///< share of its silhouette, seen from the sensor, that the scan shows
     double inlier_rms = 0.0;  ///< distance between model and scan where they agree, library unit
     std::string source;       ///< what proposed it: "segment" or "keypoints"
+    int round = 0;            ///< of the search in which it came up, from 0
+    Features features{};      ///< what the confidence comes from
 };
 
 struct Recognition {
-    std::vector<RecognizedObject> objects;  ///< most confident first
-    std::map<std::string, double> seconds;  ///< wall time of each stage
-    std::size_t scan_points = 0;            ///< at the library's sampling distance
+    std::vector<RecognizedObject> objects;     ///< most confident first
+    std::vector<RecognizedObject> candidates;  ///< with RecognitionSettings::keep_candidates: all
+                                               ///< that was verified, reported or not
+    std::map<std::string, double> seconds;     ///< wall time of each stage
+    std::size_t scan_points = 0;               ///< at the library's sampling distance
     bool table_found = false;
+    bool out_of_time = false;  ///< RecognitionSettings::time_limit ended the search
 };
 
 /// A library made ready for many scans. recognize() is const and safe from many threads.

@@ -16,26 +16,22 @@ constexpr double kCoarseReach = 6.0;  // sampling distances
 constexpr double kFineReach = 2.5;    // sampling distances
 constexpr double kPlace = 0.25;       // diameters between centers that are at the same place
 constexpr std::size_t kPerPlace = 5;
-constexpr double kEndReach = 1.0;  // sampling distances
+constexpr double kEndReach = 1.0;           // sampling distances
+constexpr std::size_t kGlanceSamples = 96;  // of the model's surface, for a first look at a pose
+constexpr std::size_t kGlanceShare = 8;     // candidates looked at again, for each one refined
 
+// Scores and sorts, best first.
 void score_all(const Scan& scan, const ModelProbe& probe, std::vector<Hypothesis>& hypotheses,
-               double tolerance) {
+               double tolerance, std::size_t samples = kProbeSamples) {
     parallel_for(
         hypotheses.size(),
         [&](std::size_t i) {
-            hypotheses[i].score =
-                quick_score(gather_evidence(scan, probe, hypotheses[i].T_scene_model, tolerance));
+            hypotheses[i].score = quick_score(
+                gather_evidence(scan, probe, hypotheses[i].T_scene_model, tolerance, samples));
         },
-        8);
+        16);
     std::stable_sort(hypotheses.begin(), hypotheses.end(),
                      [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
-}
-
-bool nearly_equal(const Pose& a, const Pose& b, const MeshShape& shape, double distance) {
-    const Vec3d centers = a * shape.center - b * shape.center;
-    const Mat3d turn = a.linear() * b.linear().transpose();
-    const double angle = std::acos(std::clamp((turn.trace() - 1.0) / 2.0, -1.0, 1.0));
-    return centers.norm() + angle * shape.radius < distance;
 }
 
 // The best `count` hypotheses, each farther than `distance` from every better one, and at most
@@ -62,13 +58,22 @@ void thin_out(std::vector<Hypothesis>& hypotheses, std::size_t count, const Mesh
 
 }  // namespace
 
+bool nearly_equal(const Pose& a, const Pose& b, const MeshShape& shape, double distance) {
+    const Vec3d centers = a * shape.center - b * shape.center;
+    if (centers.norm() >= distance) return false;
+    const Mat3d turn = a.linear() * b.linear().transpose();
+    const double angle = std::acos(std::clamp((turn.trace() - 1.0) / 2.0, -1.0, 1.0));
+    return centers.norm() + angle * shape.radius < distance;
+}
+
 Pose refine_pose(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
                  std::size_t max_points, double reach) {
     const MeshShape& shape = probe.model().shape;
     const Vec3f center = Vec3d(T_scene_model * shape.center).cast<float>();
     const auto radius = static_cast<float>(shape.radius + reach);
     std::vector<std::uint32_t> around;
-    for (const std::uint32_t i : scan.foreground) {
+    for (std::uint32_t i = 0; i < scan.cloud.size(); ++i) {
+        if (!scan.explained.empty() && scan.explained[i]) continue;
         if ((scan.cloud.points[i] - center).squaredNorm() < radius * radius) around.push_back(i);
     }
     const std::size_t stride = 1 + around.size() / max_points;
@@ -88,9 +93,11 @@ std::vector<Hypothesis> refine_hypotheses(const Scan& scan, const ModelProbe& pr
                                           const RecognitionSettings& settings) {
     const MeshShape& shape = probe.model().shape;
     const double tolerance = settings.tolerance * scan.sampling;
+    score_all(scan, probe, hypotheses, 2.0 * tolerance, kGlanceSamples);
+    const auto candidates = static_cast<std::size_t>(settings.candidates_per_model);
+    if (hypotheses.size() > kGlanceShare * candidates) hypotheses.resize(kGlanceShare * candidates);
     score_all(scan, probe, hypotheses, 2.0 * tolerance);
-    thin_out(hypotheses, static_cast<std::size_t>(settings.candidates_per_model), shape,
-             3.0 * scan.sampling);
+    thin_out(hypotheses, candidates, shape, 3.0 * scan.sampling);
     parallel_for(hypotheses.size(), [&](std::size_t i) {
         hypotheses[i].T_scene_model = refine_pose(scan, probe, hypotheses[i].T_scene_model,
                                                   kCoarsePoints, kCoarseReach * scan.sampling);

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coarse to fine: many poses are scored, the best refined roughly, the best of those finely.
+// From thousands of guesses to a few exact poses (method, 3.5): cheap looks at all, coarse
+// registration of some, fine registration of the best.
 #pragma once
 
 #include "ostraka/recognition/hypothesis.hpp"
 
 namespace ostraka {
 
-/// Aligns the model at a pose with the scan's points around it.
-/// @param max_points  points of the scan used.
-/// @param reach       distance within which model and scan are paired at first, scan's unit.
+/// Registers the scan's points around a placed model, but those that another object explains, with
+/// the model's surface.
+/// @param max_points  used, thinned out evenly. @param reach  of the first step, scan's unit.
 Pose refine_pose(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
                  std::size_t max_points, double reach);
 
-/// The best few poses of one model, refined, best first, no two of them nearly equal.
+/// Whether two poses of a model move its surface less than `distance` against each other.
+bool nearly_equal(const Pose& a, const Pose& b, const MeshShape& shape, double distance);
+
+/// The poses of one model that are worth verifying, refined; best quick_score() first.
 std::vector<Hypothesis> refine_hypotheses(const Scan& scan, const ModelProbe& probe,
                                           std::vector<Hypothesis> hypotheses,
                                           const RecognitionSettings& settings);

@@ -7,10 +7,12 @@
 #include <cmath>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/base/parallel.hpp"
 #include "ostraka/cloud/farthest_points.hpp"
 #include "ostraka/cloud/normals.hpp"
 #include "ostraka/cloud/range_smoothing.hpp"
 #include "ostraka/cloud/resample.hpp"
+#include "ostraka/recognition/backdrop.hpp"
 
 namespace ostraka {
 namespace {
@@ -50,50 +52,99 @@ void check_size(const PointCloud& valid, std::size_t given, double model_diamete
     }
 }
 
-// A plane of the scan is a table if it reaches farther than a model could.
-bool is_table(const PointCloud& cloud, const Plane& plane, double model_diameter) {
-    return extent_of(select(cloud, plane.inliers)) > 1.2 * model_diameter;
+constexpr double kWallExtent = 1.2;      // of the largest model's diameter
+constexpr double kSmallestExtent = 0.3;  // of the largest model's diameter: smaller flat surfaces
+                                         // could be any model's
+
+void check_density(const PointCloud& cloud, double sampling) {
+    if (cloud.size() >= kMinPoints) return;
+    throw InvalidInput(
+        fmt::format("the scan has {} points at the library's sampling distance {:.4g}: at least {} "
+                    "are needed",
+                    cloud.size(), sampling, kMinPoints));
+}
+
+// What becomes of a scan's points.
+struct Sorted {
+    PointCloud objects;               // what may be objects
+    std::vector<float> wall_extents;  // of every point: 0, or that of the wall or table it is on
+};
+
+Sorted sort_points(const PointCloud& scan, const Backdrop& backdrop, const FlatPiece* table,
+                   double wall_extent) {
+    Sorted sorted;
+    sorted.objects.viewpoint = scan.viewpoint;
+    sorted.wall_extents.assign(scan.size(), 0.0F);
+    std::vector<char> below(scan.size(), 0);
+    parallel_for(
+        scan.size(),
+        [&](std::size_t i) {
+            const Vec3f& point = scan.points[i];
+            const double extent = backdrop.extent_at(point);
+            if (extent > wall_extent) sorted.wall_extents[i] = static_cast<float>(extent);
+            below[i] = table != nullptr && table->plane.normal.dot(point.cast<double>()) <
+                                               table->plane.offset + backdrop.slack;
+        },
+        1024);
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+        if (sorted.wall_extents[i] == 0.0F && !below[i]) {
+            sorted.objects.points.push_back(scan.points[i]);
+        }
+    }
+    return sorted;
+}
+
+// At the library's density, with normals.
+PointCloud at_density(const PointCloud& points, double sampling) {
+    PointCloud cloud = resample(smooth_ranges(points, {.spacing = sampling}), sampling);
+    cloud.normals = estimate_normals_within(cloud, kNormalRadius * sampling);
+    return remove_invalid(cloud);
+}
+
+double roughness_of(const PointCloud& cloud, const RangeMap& ranges) {
+    std::vector<float> residuals;
+    for (std::uint32_t cell = 0; cell + 1 < ranges.size(); ++cell) {
+        const RangeCell& here = ranges[cell];
+        const RangeCell& beside = ranges[cell + 1];
+        if (!here.steady || !beside.steady || here.point == beside.point) continue;
+        const Vec3f step = cloud.points[beside.point] - cloud.points[here.point];
+        residuals.push_back(std::abs(cloud.normals[here.point].dot(step)));
+    }
+    if (residuals.empty()) return 0.0;
+    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+    std::nth_element(residuals.begin(), middle, residuals.end());
+    return double{*middle};
 }
 
 }  // namespace
 
 Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
                   const RecognitionSettings& settings) {
-    PointCloud points = raw;
-    points.normals.clear();  // worked out anew at the library's density, as for its views
+    PointCloud points;
+    points.points = raw.points;
+    points.viewpoint = raw.viewpoint;
     const PointCloud valid = remove_invalid(points);
     check_size(valid, raw.size(), model_diameter);
-    PointCloud cloud = resample(smooth_ranges(valid, {.spacing = sampling}), sampling);
-    cloud.colors.clear();
-    cloud.normals = estimate_normals_within(cloud, kNormalRadius * sampling);
-    cloud = remove_invalid(cloud);
-    if (cloud.size() < kMinPoints) {
-        throw InvalidInput(
-            fmt::format("the scan has {} points at the library's sampling distance "
-                        "{:.4g}: at least {} are needed",
-                        cloud.size(), sampling, kMinPoints));
-    }
-    RangeMap ranges(valid, cloud, sampling);
-    std::optional<Plane> table;
+    Backdrop backdrop;
     if (settings.remove_plane) {
-        const auto least =
-            static_cast<std::size_t>(settings.plane_share * static_cast<double>(cloud.size()));
-        table = find_plane(cloud, least, {.tolerance = sampling, .seed = settings.seed});
-        if (table && !is_table(cloud, *table, model_diameter)) table.reset();
+        backdrop = find_backdrop(valid, sampling, kSmallestExtent * model_diameter);
     }
-    std::vector<std::uint32_t> foreground;
-    for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-        const bool on_table =
-            table && table->normal.dot(cloud.points[i].cast<double>()) < table->offset + sampling;
-        if (!on_table) foreground.push_back(i);
+    const double wall_extent = kWallExtent * model_diameter;
+    const FlatPiece* table = backdrop.table(wall_extent);
+    const Sorted sorted = sort_points(valid, backdrop, table, wall_extent);
+    PointCloud cloud = at_density(sorted.objects, sampling);
+    if (backdrop.pieces.empty()) check_density(cloud, sampling);
+    std::vector<float> extents(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        extents[i] = static_cast<float>(backdrop.extent_at(cloud.points[i]));
     }
+    RangeMap ranges(valid, sorted.wall_extents, cloud, sampling);
     Scan scan{.cloud = std::move(cloud),
-              .tree = KdTree({}),
+              .plane_extents = std::move(extents),
               .ranges = std::move(ranges),
-              .table = std::move(table),
-              .foreground = std::move(foreground),
               .sampling = sampling};
-    scan.tree = KdTree(scan.cloud.points);
+    scan.roughness = roughness_of(scan.cloud, scan.ranges);
+    if (table != nullptr) scan.table = Table{table->plane.normal, table->plane.offset};
     return scan;
 }
 

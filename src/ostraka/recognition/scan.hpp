@@ -1,31 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scan made ready: at the library's density, with normals, its table found (method, 3.1).
+// A scan made ready: at the library's density, with normals, tables and walls cut away
+// (method, 3.1).
 #pragma once
 
 #include <optional>
 
-#include "ostraka/cloud/kdtree.hpp"
-#include "ostraka/cloud/planes.hpp"
 #include "ostraka/recognition/range_map.hpp"
 #include "ostraka/recognition/settings.hpp"
 
 namespace ostraka {
 
+/// The plane that objects stand on.
+struct Table {
+    Vec3d normal = Vec3d::UnitZ();  ///< unit, toward the viewpoint
+    double offset = 0.0;            ///< normal . x = offset for points x on it
+};
+
 struct Scan {
-    PointCloud cloud;            ///< finite, about `sampling` apart, normals toward the viewpoint
-    KdTree tree;                 ///< over cloud.points
-    RangeMap ranges;             ///< of the scan at full density
-    std::optional<Plane> table;  ///< the dominant plane, if there is one
-    std::vector<std::uint32_t> foreground;  ///< indices of points that aren't on the table
+    PointCloud cloud;  ///< what may be objects: finite, about `sampling` apart, normals toward the
+                       ///< viewpoint; without what is on a table or wall, or below the table
+    std::vector<float> plane_extents;  ///< of each point: how far the flat surface it is part of
+                                       ///< extends; 0: it isn't part of a large one
+    RangeMap ranges;                   ///< of the whole scan at full density
+    std::optional<Table> table;        ///< if there is one
+    std::vector<char> explained;  ///< of each point: whether an object that was found already shows
+                                  ///< there; empty: none was
     double sampling = 0.0;
+    double roughness = 0.0;  ///< what noise is left in smooth surface: median distance of a point
+                             ///< from the tangent plane of one beside it; scan's unit
 };
 
 /// @param raw        at any density; NaN points are "no return"; viewpoint set.
 /// @param sampling   the library's.
-/// @param model_diameter  of the library's largest model: a table is larger than that.
+/// @param model_diameter  of the library's largest model: tables and walls are larger than that.
 /// @throws InvalidInput if fewer than 10 finite points remain, all points coincide, the scan's
-/// extent
-///         makes its unit implausible, or the viewpoint lies on the scan.
+///         extent makes its unit implausible, or the viewpoint lies on the scan.
 Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
                   const RecognitionSettings& settings);
 

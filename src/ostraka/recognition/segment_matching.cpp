@@ -4,14 +4,12 @@
 #include <algorithm>
 
 #include "ostraka/base/parallel.hpp"
-#include "ostraka/cloud/clusters.hpp"
+#include "ostraka/segmentation/segments.hpp"
 
 namespace ostraka {
 namespace {
 
-constexpr double kClusterGap = 2.5;  // sampling distances
-constexpr double kSmoothGap = 2.0;   // sampling distances
-constexpr std::size_t kMaxSegments = 60;
+constexpr std::size_t kMaxOfKind = 12;  // segments; the largest
 
 std::vector<Hypothesis> hypotheses_of(const PointCloud& segment, const EntryIndex& index,
                                       const RecognitionSettings& settings) {
@@ -38,23 +36,19 @@ std::vector<Hypothesis> hypotheses_of(const PointCloud& segment, const EntryInde
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> segment_scan(const Scan& scan, std::size_t min_points) {
-    const PointCloud foreground = select(scan.cloud, scan.foreground);
-    Clusters clusters =
-        euclidean_clusters(foreground.points, kClusterGap * scan.sampling, min_points);
-    const SmoothnessSettings smoothness{.tolerance = kSmoothGap * scan.sampling,
-                                        .max_angle = 0.35,
-                                        .max_curvature = 0.06,
-                                        .min_size = min_points};
-    for (auto& cluster : smooth_clusters(foreground, smoothness)) {
-        if (std::find(clusters.begin(), clusters.end(), cluster) == clusters.end()) {
-            clusters.push_back(std::move(cluster));
-        }
+    std::vector<std::uint32_t> left;
+    for (std::uint32_t i = 0; i < scan.cloud.size(); ++i) {
+        if (scan.explained.empty() || !scan.explained[i]) left.push_back(i);
     }
-    if (clusters.size() > kMaxSegments) clusters.resize(kMaxSegments);
-    for (auto& cluster : clusters) {
-        for (std::uint32_t& i : cluster) i = scan.foreground[i];
+    SegmentationSettings settings;
+    settings.patches.sampling = scan.sampling;
+    settings.min_points = min_points;
+    settings.max_of_kind = kMaxOfKind;
+    std::vector<std::vector<std::uint32_t>> segments;
+    for (Segment& segment : segment_hierarchy(scan.cloud, left, settings)) {
+        segments.push_back(std::move(segment.indices));
     }
-    return clusters;
+    return segments;
 }
 
 std::vector<Hypothesis> hypotheses_from_segments(const Scan& scan, const EntryIndex& index,

@@ -7,8 +7,8 @@
 
 namespace ostraka {
 
-/// Pieces of the scan that may belong to one object: Euclidean clusters of what isn't on the table,
-/// and their smooth parts. Indices into scan.cloud, largest first within each kind.
+/// Pieces of what isn't explained yet that may belong to one object (segments.hpp). Indices into
+/// scan.cloud.
 std::vector<std::vector<std::uint32_t>> segment_scan(const Scan& scan, std::size_t min_points);
 
 /// Retrieves the nearest entries of each segment and aligns their frames with the segment's.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks a placed model against the scan by casting rays from the scan's own viewpoint
 // (method, 3.6). Aldoma, Tombari, Di Stefano, Vincze. A Global Hypotheses Verification Method for
-// 3D Object Recognition. ECCV 2012 (support, occlusion, clutter); the choice here is greedy.
+// 3D Object Recognition. ECCV 2012 (support, occlusion, clutter).
 #pragma once
 
 #include "ostraka/recognition/hypothesis.hpp"
@@ -9,29 +9,35 @@
 
 namespace ostraka {
 
-/// A hypothesis after verification. Areas count cells of the range map.
+/// A hypothesis after verification. Areas count cells of the range map (cell_check.hpp).
 struct Verified {
     Hypothesis hypothesis;
     std::size_t silhouette = 0;  ///< cells that the placed model covers
     std::size_t support = 0;     ///< of these: the scan agrees, in distance and normal
     std::size_t hidden = 0;      ///< of these: something is in front
     std::size_t violation = 0;   ///< of these: the scan saw through, or the surface faces elsewhere
+    std::size_t backdrop = 0;    ///< of these: the scan's surface is a plane larger than the model
     std::size_t missing = 0;     ///< of these: nothing was measured
+    std::size_t unsure = 0;      ///< of these: nothing can be said
     double sunk = 0.0;           ///< share of the silhouette that would be below the table
     double open = 0.0;           ///< open_share(): where the model ends, the scan's surface doesn't
-    double inlier_rms =
-        0.0;  ///< of the distances of supporting cells, along the normal; scan's unit
+    double inlier_rms = 0.0;     ///< of the distances of supporting cells, along the normal; scan's
+                                 ///< unit
+    double turned = 0.0;         ///< mean of 1 - cosine between the normals of supporting cells
+    double grip = 0.0;           ///< how well the support holds the model in place: smallest
+                                 ///< eigenvalue of its normals' scatter, times 3; 0: a plane
+    double area = 0.0;           ///< of the support, across the line of sight, in diameters squared
     double visible_fraction = 0.0;     ///< support / silhouette
     double confidence = 0.0;           ///< 0 to 1
     std::vector<std::uint32_t> cells;  ///< the supporting cells, ascending
+
+    /// Support, less what contradicts it, as a share of what can be judged; 0 to 1.
+    double agreement() const;
 };
 
+/// All but the confidence.
 /// @param tolerance  distance along the normal that counts as agreement, in the scan's unit.
 Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hypothesis,
                 double tolerance);
-
-/// Most confident first, keeps those at or above `min_confidence` that explain something which no
-/// better one explains. @return the chosen ones, most confident first.
-std::vector<Verified> choose(std::vector<Verified> candidates, double min_confidence);
 
 }  // namespace ostraka

@@ -57,7 +57,7 @@ bool larger(const Indices& a, const Indices& b) {
 // The segments found so far. Those that are like an earlier one are not taken in.
 class Forest {
   public:
-    Forest(const SegmentSettings& settings, const Indices& order, std::size_t cloud_size)
+    Forest(const SegmentationSettings& settings, const Indices& order, std::size_t cloud_size)
         : settings_(settings), order_(order) {
         owners_.fill(Indices(cloud_size, kNoIndex));
     }
@@ -107,13 +107,13 @@ class Forest {
         return kNoIndex;
     }
 
-    const SegmentSettings& settings_;
+    const SegmentationSettings& settings_;
     const Indices& order_;  // of the ordered cloud: index in the given one
     std::vector<Segment> segments_;
     std::array<Indices, 5> owners_;  // of each kind: the segment that holds a point of the cloud
 };
 
-Clusters joined_parts(const ConvexParts& convex, const SegmentSettings& settings) {
+Clusters joined_parts(const ConvexParts& convex, const SegmentationSettings& settings) {
     Clusters joined;
     for (const PartContact& contact : convex.contacts) {  // longest first
         if (joined.size() == settings.max_of_kind || contact.pairs < settings.min_contact) break;
@@ -128,7 +128,7 @@ Clusters joined_parts(const ConvexParts& convex, const SegmentSettings& settings
 
 // Each part by itself, so that regions don't leak through a blended crease.
 Clusters smooth_regions(const PointCloud& cloud, const Clusters& parts,
-                        const SegmentSettings& settings) {
+                        const SegmentationSettings& settings) {
     const SmoothnessSettings smoothness{.tolerance = kSmoothGap * settings.patches.sampling,
                                         .max_angle = settings.smooth_angle,
                                         .max_curvature = settings.smooth_curvature,
@@ -144,7 +144,7 @@ Clusters smooth_regions(const PointCloud& cloud, const Clusters& parts,
 }
 
 Clusters plane_sets(const PointCloud& cloud, const SurfacePatches& surface,
-                    const SegmentSettings& settings) {
+                    const SegmentationSettings& settings) {
     PlanePieceSettings planes = settings.planes;
     planes.min_points = settings.min_points;
     Clusters sets;
@@ -174,7 +174,7 @@ std::string_view name_of(SegmentKind kind) {
 
 std::vector<Segment> segment_hierarchy(const PointCloud& cloud,
                                        std::span<const std::uint32_t> foreground,
-                                       const SegmentSettings& settings) {
+                                       const SegmentationSettings& settings) {
     if (settings.gap < settings.patches.reach) {
         throw InvalidInput("segments: the gap between clusters must not be less than the reach");
     }

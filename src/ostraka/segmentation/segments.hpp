@@ -29,7 +29,7 @@ struct Segment {
     SegmentKind kind = SegmentKind::cluster;
 };
 
-struct SegmentSettings {
+struct SegmentationSettings {
     PatchSettings patches;      ///< patches.sampling must be set
     ConvexSettings convex;      ///< its min_points is replaced by the one below
     PlanePieceSettings planes;  ///< as above
@@ -54,6 +54,6 @@ struct SegmentSettings {
 ///         or the gap is less than the reach.
 std::vector<Segment> segment_hierarchy(const PointCloud& cloud,
                                        std::span<const std::uint32_t> foreground,
-                                       const SegmentSettings& settings);
+                                       const SegmentationSettings& settings);
 
 }  // namespace ostraka

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The probability that a report is right, from what verification found of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace ostraka {
+
+/// What a verified hypothesis is judged by. All are about 0 to 1.
+enum class Feature : std::uint8_t {
+    constant,        ///< 1
+    agreement,       ///< support as a share of what can be judged
+    good_agreement,  ///< what that exceeds 0.8 by
+    misfit,          ///< deviation of the scan from the model, in tolerances
+    excess,          ///< what that exceeds the scan's own roughness by
+    turned,          ///< mean of 1 - cosine between the normals of scan and model
+    visible,         ///< share of the silhouette that the scan shows, at most 0.5
+    area,            ///< logarithm of what supports, as an area in squared diameters
+    cells,           ///< logarithm of what supports, as cells of the range map
+    grip,            ///< how well what supports holds the model in place; 0: a plane
+    open,            ///< share of the outline where the scan's surface goes on
+    sunk,            ///< share that would be below the table
+    count            // how many there are
+};
+inline constexpr std::size_t kFeatures = static_cast<std::size_t>(Feature::count);
+using Features = std::array<double, kFeatures>;
+
+std::string_view feature_name(Feature feature);
+
+/// A logistic function of the features.
+struct ConfidenceModel {
+    Features weights{};
+    double confidence(const Features& features) const;
+};
+
+/// Fitted to simulated scenes of shipped and other parts; one that is fitted to a library's own
+/// models knows which of them are easily mistaken.
+const ConfidenceModel& general_confidence();
+
+}  // namespace ostraka

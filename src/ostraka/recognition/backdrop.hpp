@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables, walls and floors: flat surface that is too large to be an object's. Found first, on a
+// thinned scan, as nothing else needs to be done with the many points on them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "ostraka/segmentation/plane_pieces.hpp"
+
+namespace ostraka {
+
+/// A connected flat piece of the scan.
+struct FlatPiece {
+    PlanePiece plane;
+    double extent = 0.0;  ///< of the surface it is part of, scan's unit: coplanar pieces are one
+                          ///< surface, seen between the objects before it, where hardly anything of
+                          ///< the scan lies behind them (the tops of two equal boxes are not)
+    bool last = false;    ///< hardly anything of the scan lies behind it
+    double share = 0.0;   ///< of the scan's surface, that of coplanar pieces included
+};
+
+struct Backdrop {
+    std::vector<FlatPiece> pieces;  ///< of at least the least extent asked for; largest first
+    double slack = 0.0;  ///< distance from a piece that counts as on it: what sampling and noise
+                         ///< make of a flat surface; scan's unit
+
+    /// How far the flat surface extends that a point is on; 0: on none.
+    double extent_at(const Vec3f& point) const;
+    /// The table: the largest of the surfaces that have nothing behind, if it extends at least
+    /// `extent`; nullptr if there is none.
+    const FlatPiece* table(double extent) const;
+};
+
+/// @param scan      finite points of any density; viewpoint set.
+/// @param sampling  distance that details have; pieces are found at several times that.
+/// @param least     extent of the smallest surface of interest.
+Backdrop find_backdrop(const PointCloud& scan, double sampling, double least);
+
+}  // namespace ostraka

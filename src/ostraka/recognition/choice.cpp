@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/recognition/choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+namespace {
+
+constexpr double kMaxShared = 0.35;  // of the smaller support of two that may stand together
+constexpr int kMaxSteps = 200'000;   // of branch and bound, a group of conflicting hypotheses
+
+std::size_t shared_cells(const Verified& a, const Verified& b) {
+    if (a.cells.empty() || b.cells.empty()) return 0;
+    if (a.cells.back() < b.cells.front() || b.cells.back() < a.cells.front()) return 0;
+    std::size_t shared = 0;
+    for (auto i = a.cells.begin(), j = b.cells.begin(); i != a.cells.end() && j != b.cells.end();) {
+        if (*i < *j) {
+            ++i;
+        } else if (*j < *i) {
+            ++j;
+        } else {
+            ++shared, ++i, ++j;
+        }
+    }
+    return shared;
+}
+
+bool in_conflict(const Verified& a, const Verified& b) {
+    const auto smaller = static_cast<double>(std::min(a.support, b.support));
+    return static_cast<double>(shared_cells(a, b)) > kMaxShared * smaller;
+}
+
+// Grows with how sure the hypothesis is and with how much it explains.
+double value_of(const Verified& v) {
+    const double doubt = std::max(1.0 - v.confidence, 1e-9);
+    return -std::log(doubt) * std::sqrt(static_cast<double>(v.support));
+}
+
+// Finds the set of greatest value without conflicts in one group. Members are in descending value.
+class Search {
+  public:
+    Search(std::vector<double> values, std::vector<std::vector<bool>> conflicts)
+        : values_(std::move(values)), conflicts_(std::move(conflicts)) {}
+
+    std::vector<std::size_t> best() {
+        std::vector<bool> free(values_.size(), true);
+        branch(0, 0.0, free);
+        return best_;
+    }
+
+  private:
+    // No more can be had of what is free from `next` on.
+    double bound(std::size_t next, const std::vector<bool>& free) const {
+        double sum = 0.0;
+        for (std::size_t i = next; i < values_.size(); ++i) {
+            if (free[i]) sum += values_[i];
+        }
+        return sum;
+    }
+
+    void branch(std::size_t next, double value, const std::vector<bool>& free) {
+        while (next < values_.size() && !free[next]) ++next;
+        if (value > best_value_) {
+            best_value_ = value;
+            best_ = taken_;
+        }
+        if (next == values_.size() || ++steps_ > kMaxSteps) return;
+        if (value + bound(next, free) <= best_value_) return;
+        std::vector<bool> left = free;
+        for (std::size_t i = next; i < left.size(); ++i) {
+            if (conflicts_[next][i]) left[i] = false;
+        }
+        taken_.push_back(next);
+        branch(next + 1, value + values_[next], left);
+        taken_.pop_back();
+        branch(next + 1, value, free);
+    }
+
+    std::vector<double> values_;
+    std::vector<std::vector<bool>> conflicts_;
+    std::vector<std::size_t> taken_;
+    std::vector<std::size_t> best_;
+    double best_value_ = 0.0;
+    int steps_ = 0;
+};
+
+std::vector<std::vector<bool>> conflicts_of(std::span<const Verified* const> candidates,
+                                            const std::vector<std::size_t>& able) {
+    const std::size_t n = able.size();
+    std::vector<std::vector<bool>> conflicts(n, std::vector<bool>(n, false));
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = i + 1; j < n; ++j) {
+            conflicts[i][j] = conflicts[j][i] =
+                in_conflict(*candidates[able[i]], *candidates[able[j]]);
+        }
+    }
+    return conflicts;
+}
+
+// Items that conflict, directly or through others, are in one group. Ascending indices.
+std::vector<std::vector<std::size_t>> groups_of(const std::vector<std::vector<bool>>& conflicts) {
+    std::vector<bool> seen(conflicts.size(), false);
+    std::vector<std::vector<std::size_t>> groups;
+    for (std::size_t i = 0; i < conflicts.size(); ++i) {
+        if (seen[i]) continue;
+        std::vector<std::size_t> group = {i};
+        seen[i] = true;
+        for (std::size_t k = 0; k < group.size(); ++k) {
+            for (std::size_t j = 0; j < conflicts.size(); ++j) {
+                if (!conflicts[group[k]][j] || seen[j]) continue;
+                seen[j] = true;
+                group.push_back(j);
+            }
+        }
+        std::sort(group.begin(), group.end());
+        groups.push_back(std::move(group));
+    }
+    return groups;
+}
+
+// The best choice within a group of conflicting candidates.
+std::vector<std::size_t> best_of_group(const std::vector<std::size_t>& group,
+                                       const std::vector<double>& all_values,
+                                       const std::vector<std::vector<bool>>& conflicts) {
+    std::vector<double> values;
+    std::vector<std::vector<bool>> inner(group.size(), std::vector<bool>(group.size(), false));
+    for (std::size_t i = 0; i < group.size(); ++i) {
+        values.push_back(all_values[group[i]]);
+        for (std::size_t j = 0; j < group.size(); ++j) inner[i][j] = conflicts[group[i]][group[j]];
+    }
+    std::vector<std::size_t> chosen = Search(std::move(values), std::move(inner)).best();
+    for (std::size_t& index : chosen) index = group[index];
+    return chosen;
+}
+
+}  // namespace
+
+std::vector<std::size_t> choose(std::span<const Verified* const> candidates,
+                                double min_confidence) {
+    std::vector<std::size_t> able;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const Verified& v = *candidates[i];
+        if (v.confidence >= min_confidence && v.support > 0) able.push_back(i);
+    }
+    std::stable_sort(able.begin(), able.end(), [&](std::size_t a, std::size_t b) {
+        return value_of(*candidates[a]) > value_of(*candidates[b]);
+    });
+    const auto conflicts = conflicts_of(candidates, able);
+    std::vector<double> values;
+    for (const std::size_t i : able) values.push_back(value_of(*candidates[i]));
+    std::vector<std::size_t> chosen;
+    for (const auto& group : groups_of(conflicts)) {
+        for (const std::size_t i : best_of_group(group, values, conflicts)) {
+            chosen.push_back(able[i]);
+        }
+    }
+    std::stable_sort(chosen.begin(), chosen.end(), [&](std::size_t a, std::size_t b) {
+        const Verified& v = *candidates[a];
+        const Verified& w = *candidates[b];
+        return v.confidence != w.confidence ? v.confidence > w.confidence : v.support > w.support;
+    });
+    return chosen;
+}
+
+}  // namespace ostraka

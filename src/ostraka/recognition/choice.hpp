@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which hypotheses together explain a scan best, each piece of it once.
+// Aldoma, Tombari, Di Stefano, Vincze. A Global Hypotheses Verification Method for 3D Object
+// Recognition. ECCV 2012. Departs from the paper: hypotheses are weighed by their probability, and
+// the choice is solved by branch and bound where simulated annealing was used, so that it is the
+// best one and always the same.
+#pragma once
+
+#include "ostraka/recognition/verification.hpp"
+
+namespace ostraka {
+
+/// Of the hypotheses at or above `min_confidence` the set with the greatest sum of
+/// -log(1 - confidence) sqrt(support), no two of which explain more than a third of the same cells.
+/// Up to some hundred thousand steps are spent on finding it; what is best by then is returned.
+/// @return indices of the chosen ones, most confident first.
+std::vector<std::size_t> choose(std::span<const Verified* const> candidates, double min_confidence);
+
+}  // namespace ostraka

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/recognition/confidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+namespace {
+
+constexpr std::size_t kMinSupport = 40;  // cells
+constexpr double kGoodAgreement = 0.8;
+constexpr double kEnoughVisible = 0.5;
+constexpr double kRoughness = 1.5;  // from a median to a deviation
+
+}  // namespace
+
+bool too_small(const Verified& verified) {
+    return verified.support < kMinSupport;
+}
+
+Features features_of(const Verified& v, const Scan& scan, double tolerance) {
+    Features features{};
+    const auto set = [&](Feature feature, double value) {
+        features[static_cast<std::size_t>(feature)] = value;
+    };
+    const double agreement = v.agreement();
+    const double cells = static_cast<double>(v.support) / static_cast<double>(kMinSupport);
+    set(Feature::constant, 1.0);
+    set(Feature::agreement, agreement);
+    set(Feature::good_agreement, std::max(0.0, agreement - kGoodAgreement));
+    set(Feature::misfit, v.inlier_rms / tolerance);
+    set(Feature::excess, std::max(0.0, v.inlier_rms - kRoughness * scan.roughness) / tolerance);
+    set(Feature::turned, v.turned);
+    set(Feature::visible, std::min(v.visible_fraction, kEnoughVisible));
+    set(Feature::area, std::log10(1.0 + 100.0 * v.area));
+    set(Feature::cells, std::log10(1.0 + cells));
+    set(Feature::grip, std::sqrt(v.grip));
+    set(Feature::open, v.open);
+    set(Feature::sunk, v.sunk);
+    return features;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ostraka/library/confidence_model.hpp"
+#include "ostraka/recognition/verification.hpp"
+
+namespace ostraka {
+
+/// Too little support to say anything: such hypotheses are never reported.
+bool too_small(const Verified& verified);
+
+/// @param scan  that it was verified against, with this tolerance.
+Features features_of(const Verified& verified, const Scan& scan, double tolerance);
+
+}  // namespace ostraka

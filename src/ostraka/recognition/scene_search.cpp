@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/recognition/scene_search.hpp"
+
+#include <algorithm>
+
+#include "ostraka/base/parallel.hpp"
+#include "ostraka/recognition/choice.hpp"
+#include "ostraka/recognition/keypoint_matching.hpp"
+#include "ostraka/recognition/refinement.hpp"
+#include "ostraka/recognition/segment_matching.hpp"
+
+namespace ostraka {
+namespace {
+
+constexpr int kMaxRounds = 8;
+constexpr double kAccept = 0.5;        // confidence from which an object explains its points
+constexpr std::size_t kMinLeft = 100;  // unexplained points that are worth another round
+constexpr double kOnSurface = 1.5;     // sampling distances from an object that explains a point
+constexpr double kTwin = 0.5;          // sampling distances between poses that are the same
+
+void mark_points(const Verified& object, const ModelProbe& probe, Scan& scan) {
+    const Pose T_model_scene = object.hypothesis.T_scene_model.inverse(Eigen::Isometry);
+    const Mat3f R = T_model_scene.linear().cast<float>();
+    const Vec3f t = T_model_scene.translation().cast<float>();
+    const auto limit = static_cast<float>(kOnSurface * scan.sampling);
+    for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
+        if (scan.explained[i]) continue;
+        const Vec3f at = R * scan.cloud.points[i] + t;
+        const std::uint32_t nearest = probe.field().nearest(at);
+        if (nearest == kNoIndex) continue;
+        const float off = probe.field().normal(nearest).dot(at - probe.field().point(nearest));
+        const bool beside =
+            (at - probe.field().point(nearest)).squaredNorm() > 4.0F * limit * limit;
+        scan.explained[i] = !beside && std::abs(off) < limit;
+    }
+}
+
+}  // namespace
+
+SceneSearch::SceneSearch(const EntryIndex& index, std::span<const ModelProbe> probes, Scan scan,
+                         const RecognitionSettings& settings, const Stopwatch& since_start)
+    : index_(index),
+      probes_(probes),
+      scan_(std::move(scan)),
+      settings_(settings),
+      since_start_(since_start),
+      confidence_(index.library().confidence.value_or(general_confidence())),
+      proposed_(probes.size()) {}
+
+void SceneSearch::run() {
+    if (settings_.use_keypoints) propose_by_keypoints();
+    bool found = play_round(0);
+    if (settings_.use_segments) {
+        propose_by_segments();
+        found = play_round(1) || found;
+    }
+    for (int round = 2; round < kMaxRounds && found; ++round) found = play_round(round);
+}
+
+void SceneSearch::propose_by_keypoints() {
+    if (expired()) return;
+    Stopwatch watch;
+    const auto matches =
+        match_keypoints(scan_, index_.library().settings, index_.keypoints(), settings_);
+    parallel_for(matches.size(), [&](std::size_t m) {
+        for (const Pose& pose : poses_from_matches(matches[m], 2.0 * scan_.sampling)) {
+            proposed_[m].push_back({.model = static_cast<std::uint32_t>(m),
+                                    .T_scene_model = pose,
+                                    .source = HypothesisSource::keypoints});
+        }
+    });
+    seconds_["keypoints"] += watch.lap();
+}
+
+void SceneSearch::propose_by_segments() {
+    if (expired() || unexplained() < kMinLeft) return;
+    Stopwatch watch;
+    for (const Hypothesis& h : hypotheses_from_segments(scan_, index_, settings_)) {
+        proposed_[h.model].push_back(h);
+    }
+    seconds_["segments"] += watch.lap();
+}
+
+// Whether it found something that was not explained before.
+bool SceneSearch::play_round(int number) {
+    if (expired() || unexplained() < kMinLeft) return false;
+    Stopwatch watch;
+    const std::vector<Hypothesis> finalists = refined();
+    seconds_["refine"] += watch.lap();
+    verify_new(finalists, number);
+    const std::size_t before = unexplained();
+    const std::size_t after = mark_explained();
+    seconds_["verify"] += watch.lap();
+    return after + kMinLeft / 2 < before;
+}
+
+std::vector<Hypothesis> SceneSearch::refined() {
+    std::vector<std::vector<Hypothesis>> of_model(probes_.size());
+    parallel_for(probes_.size(), [&](std::size_t m) {
+        const bool late =
+            settings_.time_limit > 0.0 && since_start_.seconds() > settings_.time_limit;
+        if (!late && asked_for(m))
+            of_model[m] = refine_hypotheses(scan_, probes_[m], proposed_[m], settings_);
+    });
+    std::vector<Hypothesis> all;
+    for (const auto& some : of_model) {
+        for (const Hypothesis& finalist : some) {
+            const MeshShape& shape = probes_[finalist.model].model().shape;
+            const bool known =
+                std::any_of(judged_.begin(), judged_.end(), [&](const Judged& other) {
+                    const Hypothesis& h = other.verified.hypothesis;
+                    return h.model == finalist.model &&
+                           nearly_equal(h.T_scene_model, finalist.T_scene_model, shape,
+                                        kTwin * scan_.sampling);
+                });
+            if (!known) all.push_back(finalist);
+        }
+    }
+    return all;
+}
+
+void SceneSearch::verify_new(const std::vector<Hypothesis>& finalists, int round) {
+    const double tolerance = settings_.tolerance * scan_.sampling;
+    std::vector<Judged> fresh(finalists.size());
+    parallel_for(finalists.size(), [&](std::size_t i) {
+        Judged& one = fresh[i];
+        one.verified = verify(scan_, probes_[finalists[i].model], finalists[i], tolerance);
+        one.features = features_of(one.verified, scan_, tolerance);
+        one.round = round;
+        one.verified.confidence =
+            too_small(one.verified) ? 0.0 : confidence_.confidence(one.features);
+    });
+    for (Judged& one : fresh) judged_.push_back(std::move(one));
+}
+
+std::size_t SceneSearch::mark_explained() {
+    scan_.explained.assign(scan_.cloud.size(), 0);
+    for (const std::size_t i : explanation(kAccept)) {
+        const Verified& object = judged_[i].verified;
+        mark_points(object, probes_[object.hypothesis.model], scan_);
+    }
+    return unexplained();
+}
+
+std::size_t SceneSearch::unexplained() const {
+    if (scan_.explained.empty()) return scan_.cloud.size();
+    return static_cast<std::size_t>(
+        std::count(scan_.explained.begin(), scan_.explained.end(), char{0}));
+}
+
+std::vector<std::size_t> SceneSearch::explanation(double min_confidence) const {
+    std::vector<const Verified*> all;
+    for (const Judged& one : judged_) all.push_back(&one.verified);
+    return choose(all, min_confidence);
+}
+
+bool SceneSearch::asked_for(std::size_t model) const {
+    return settings_.only.empty() ||
+           std::find(settings_.only.begin(), settings_.only.end(), model) != settings_.only.end();
+}
+
+bool SceneSearch::expired() {
+    if (settings_.time_limit > 0.0 && since_start_.seconds() > settings_.time_limit) {
+        out_of_time_ = true;
+    }
+    return out_of_time_;
+}
+
+}  // namespace ostraka
