@@ -14,6 +14,7 @@
 #include "ostraka/base/stopwatch.hpp"
 #include "ostraka/library/build.hpp"
 #include "ostraka/library/build_file.hpp"
+#include "rebuilt_note.hpp"
 
 namespace ostraka::app {
 namespace {
@@ -59,16 +60,19 @@ ModelInput input_in_unit(const std::string& argument, std::optional<Unit> unit) 
     const std::filesystem::path path = own ? argument.substr(0, colon) : argument;
     if (!std::filesystem::exists(path)) throw FileError(path, "no such file");
     ModelInput input = model_input(path);
-    if (!own || !unit) return input;  // a missing --unit is reported later, with the models' sizes
+    if (!own || !unit)
+        return tell_rebuilt(
+            std::move(input));  // a missing --unit is reported later, with the models' sizes
     const auto factor = static_cast<float>(unit_factor(*own, *unit));
     input.file = std::filesystem::path(argument).filename().string();
     input.load = [path, factor, file = input.file] {
         ModelSource model = load_model(path);
         for (Vec3f& vertex : model.mesh.vertices) vertex *= factor;
+        model.cloud_spacing *= double{factor};
         model.file = file;
         return model;
     };
-    return input;
+    return tell_rebuilt(std::move(input));
 }
 
 struct Shard {
@@ -205,7 +209,8 @@ void add_build(CLI::App& app) {
     command
         ->add_option(
             "models", options->models,
-            "mesh files: PLY, OBJ, STL, OFF, glTF; with :mm, :cm, :m or :in behind the name "
+            "mesh files: PLY, OBJ, STL, OFF, glTF, or clouds seen from all around: PLY, PCD, XYZ; "
+            "with :mm, :cm, :m or :in behind the name "
             "where the unit is not --unit")
         ->required();
     command->add_option("-o,--output", options->output, "library file to write")->required();

@@ -10,6 +10,7 @@
 #include "ostraka/io/atomic_file.hpp"
 #include "ostraka/library/edit.hpp"
 #include "ostraka/library/library_file.hpp"
+#include "rebuilt_note.hpp"
 
 namespace ostraka::app {
 namespace {
@@ -50,7 +51,7 @@ void run_add(const EditOptions& options) {
     std::vector<ModelInput> models;
     for (const std::string& path : options.inputs) {
         if (!std::filesystem::exists(path)) throw FileError(path, "no such file");
-        models.push_back(model_input(path));
+        models.push_back(tell_rebuilt(model_input(path)));
     }
     AddOutcome outcome;
     edit(options, [&](const std::filesystem::path& library) {
@@ -103,7 +104,10 @@ void add_edit(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "add", "add models to a library, built with its own settings; the others stay as they are");
     command->add_option("library", add->library, "library made by `ostraka build`")->required();
-    command->add_option("models", add->inputs, "mesh files, in the library's unit")->required();
+    command
+        ->add_option("models", add->inputs,
+                     "mesh files, or clouds seen from all around, in the library's unit")
+        ->required();
     add_output(*command, *add);
     add_common(*command, add->common);
     command->callback([add] { run_add(*add); });
