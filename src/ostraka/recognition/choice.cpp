@@ -26,11 +26,6 @@ std::size_t shared_cells(const Verified& a, const Verified& b) {
     return shared;
 }
 
-bool in_conflict(const Verified& a, const Verified& b) {
-    const auto smaller = static_cast<double>(std::min(a.support, b.support));
-    return static_cast<double>(shared_cells(a, b)) > kMaxShared * smaller;
-}
-
 // Grows with how sure the hypothesis is and with how much it explains.
 double value_of(const Verified& v) {
     const double doubt = std::max(1.0 - v.confidence, 1e-9);
@@ -135,6 +130,16 @@ std::vector<std::size_t> best_of_group(const std::vector<std::size_t>& group,
 }
 
 }  // namespace
+
+double shared_support(const Verified& a, const Verified& b) {
+    const std::size_t smaller = std::min(a.support, b.support);
+    if (smaller == 0) return 0.0;
+    return static_cast<double>(shared_cells(a, b)) / static_cast<double>(smaller);
+}
+
+bool in_conflict(const Verified& a, const Verified& b) {
+    return shared_support(a, b) > kMaxShared;
+}
 
 std::vector<std::size_t> choose(std::span<const Verified* const> candidates,
                                 double min_confidence) {

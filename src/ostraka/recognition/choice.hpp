@@ -10,6 +10,12 @@
 
 namespace ostraka {
 
+/// How much of the smaller support both explain, 0 to 1.
+double shared_support(const Verified& a, const Verified& b);
+
+/// Whether they explain too much of the same cells to stand together.
+bool in_conflict(const Verified& a, const Verified& b);
+
 /// Of the hypotheses at or above `min_confidence` the set with the greatest sum of
 /// -log(1 - confidence) sqrt(support), no two of which explain more than a third of the same cells.
 /// Up to some hundred thousand steps are spent on finding it; what is best by then is returned.

@@ -80,7 +80,7 @@ double Verified::agreement() const {
 }
 
 Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hypothesis,
-                double tolerance) {
+                double tolerance, CellVerdicts* detail) {
     Verified result;
     result.hypothesis = hypothesis;
     const Pose& T_scene_model = hypothesis.T_scene_model;
@@ -117,6 +117,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
     result.area =
         static_cast<double>(result.support) * cell_area / (shape.diameter * shape.diameter);
     result.open = open_share(scan, window, verdicts);
+    if (detail != nullptr) *detail = {window, std::move(verdicts)};
     return result;
 }
 

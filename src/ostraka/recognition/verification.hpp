@@ -4,6 +4,7 @@
 // 3D Object Recognition. ECCV 2012 (support, occlusion, clutter).
 #pragma once
 
+#include "ostraka/recognition/cell_check.hpp"
 #include "ostraka/recognition/hypothesis.hpp"
 #include "ostraka/recognition/outline.hpp"
 
@@ -35,9 +36,16 @@ struct Verified {
     double agreement() const;
 };
 
+/// What verify() found in each cell of the range map around a placed model.
+struct CellVerdicts {
+    std::vector<std::uint32_t> cells;  ///< ascending
+    std::vector<CellVerdict> verdicts;
+};
+
 /// All but the confidence.
 /// @param tolerance  distance along the normal that counts as agreement, in the scan's unit.
+/// @param detail  also gets the verdict of each cell, if given.
 Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hypothesis,
-                double tolerance);
+                double tolerance, CellVerdicts* detail = nullptr);
 
 }  // namespace ostraka
