@@ -144,7 +144,7 @@ Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
               .ranges = std::move(ranges),
               .sampling = sampling};
     scan.roughness = roughness_of(scan.cloud, scan.ranges);
-    if (table != nullptr) scan.table = Table{table->plane.normal, table->plane.offset};
+    if (table != nullptr) scan.table = TablePlane{table->plane.normal, table->plane.offset};
     return scan;
 }
 

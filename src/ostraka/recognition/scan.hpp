@@ -11,7 +11,7 @@
 namespace ostraka {
 
 /// The plane that objects stand on.
-struct Table {
+struct TablePlane {
     Vec3d normal = Vec3d::UnitZ();  ///< unit, toward the viewpoint
     double offset = 0.0;            ///< normal . x = offset for points x on it
 };
@@ -22,7 +22,7 @@ struct Scan {
     std::vector<float> plane_extents;  ///< of each point: how far the flat surface it is part of
                                        ///< extends; 0: it isn't part of a large one
     RangeMap ranges;                   ///< of the whole scan at full density
-    std::optional<Table> table;        ///< if there is one
+    std::optional<TablePlane> table;   ///< if there is one
     std::vector<char> explained;  ///< of each point: whether an object that was found already shows
                                   ///< there; empty: none was
     double sampling = 0.0;
