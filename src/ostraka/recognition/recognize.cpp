@@ -7,6 +7,7 @@
 #include "ostraka/base/error.hpp"
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/base/stopwatch.hpp"
+#include "ostraka/recognition/choice.hpp"
 #include "ostraka/recognition/scene_search.hpp"
 
 namespace ostraka {
@@ -42,6 +43,30 @@ RecognizedObject report_object(const Judged& judged, const ModelLibrary& library
             .features = judged.features};
 }
 
+// Of the reported ones that explain too much of the same, the one that explains most of it.
+std::uint32_t winner_over(std::size_t candidate, const std::vector<Judged>& judged,
+                          const std::vector<std::size_t>& reported) {
+    std::uint32_t winner = kNoIndex;
+    double most = 0.0;
+    for (std::size_t k = 0; k < reported.size(); ++k) {
+        const Verified& rival = judged[reported[k]].verified;
+        const double shared = shared_support(judged[candidate].verified, rival);
+        if (reported[k] == candidate) return static_cast<std::uint32_t>(k);
+        if (shared <= most || !in_conflict(judged[candidate].verified, rival)) continue;
+        winner = static_cast<std::uint32_t>(k);
+        most = shared;
+    }
+    return winner;
+}
+
+void add_candidates(const std::vector<Judged>& judged, const std::vector<std::size_t>& reported,
+                    const ModelLibrary& library, Recognition& result) {
+    result.lost_to.resize(judged.size());
+    parallel_for(judged.size(),
+                 [&](std::size_t i) { result.lost_to[i] = winner_over(i, judged, reported); });
+    for (const Judged& one : judged) result.candidates.push_back(report_object(one, library));
+}
+
 }  // namespace
 
 struct Recognizer::Implementation {
@@ -66,8 +91,7 @@ Recognition Recognizer::recognize(const PointCloud& scene,
     const Implementation& self = *implementation_;
     Recognition result;
     const Stopwatch watch;
-    Scan scan = prepare_scan(scene, self.library.settings.sampling, largest_diameter(self.library),
-                             settings);
+    Scan scan = prepare_scan(self.library, scene, settings);
     result.scan_points = scan.cloud.size();
     result.table_found = scan.table.has_value();
     const double prepared = watch.seconds();
@@ -75,18 +99,22 @@ Recognition Recognizer::recognize(const PointCloud& scene,
 
     SceneSearch search(self.index, self.probes, std::move(scan), settings, watch);
     search.run();
-    for (const std::size_t i : search.explanation(settings.min_confidence)) {
+    const std::vector<std::size_t> reported = search.explanation(settings.min_confidence);
+    for (const std::size_t i : reported) {
         result.objects.push_back(report_object(search.judged()[i], self.library));
     }
     if (settings.keep_candidates) {
-        for (const Judged& one : search.judged()) {
-            result.candidates.push_back(report_object(one, self.library));
-        }
+        add_candidates(search.judged(), reported, self.library, result);
     }
     result.seconds = search.seconds();
     result.seconds["prepare"] = prepared;
     result.out_of_time = search.out_of_time();
     return result;
+}
+
+Scan prepare_scan(const ModelLibrary& library, const PointCloud& scene,
+                  const RecognitionSettings& settings) {
+    return prepare_scan(scene, library.settings.sampling, largest_diameter(library), settings);
 }
 
 Recognition recognize(const ModelLibrary& library, const PointCloud& scene,

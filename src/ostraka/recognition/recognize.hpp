@@ -12,6 +12,8 @@
 
 namespace ostraka {
 
+struct Scan;  // scan.hpp
+
 struct RecognizedObject {
     std::string model;
     std::uint32_t model_index = kNoIndex;  ///< into ModelLibrary::models
@@ -30,6 +32,10 @@ struct Recognition {
     std::vector<RecognizedObject> objects;     ///< most confident first
     std::vector<RecognizedObject> candidates;  ///< with RecognitionSettings::keep_candidates: all
                                                ///< that was verified, reported or not
+    std::vector<std::uint32_t> lost_to;        ///< for each candidate the reported object that
+                                               ///< explains the same of the scan, as an index into
+                                               ///< `objects`; of a reported one itself; kNoIndex
+                                               ///< if there is none
     std::map<std::string, double> seconds;     ///< wall time of each stage
     std::size_t scan_points = 0;               ///< at the library's sampling distance
     bool table_found = false;
@@ -55,6 +61,11 @@ class Recognizer {
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
+
+/// The scan as recognize() prepares it: what its hypotheses are verified against.
+/// @param scene  as given to recognize(). @throws InvalidInput as recognize() does.
+Scan prepare_scan(const ModelLibrary& library, const PointCloud& scene,
+                  const RecognitionSettings& settings);
 
 /// One scan, once.
 Recognition recognize(const ModelLibrary& library, const PointCloud& scene,
