@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <sstream>
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "explain_page.hpp"
+#include "ostraka/base/error.hpp"
 #include "ostraka/base/stopwatch.hpp"
 #include "ostraka/io/cloud_file.hpp"
 #include "ostraka/io/png_file.hpp"
@@ -24,10 +29,20 @@ struct RecognizeOptions {
     std::string viewpoint;
     std::string overlay;
     std::string picture;
+    std::string explain;
+    std::string only;
     RecognitionSettings settings;
 };
 
 constexpr int kAxisSteps = 12;  // equivalent poses listed for each continuous axis
+
+Json features_json(const Features& features) {
+    Json json = Json::object();
+    for (std::size_t i = 0; i < kFeatures; ++i) {
+        json[std::string(feature_name(static_cast<Feature>(i)))] = features[i];
+    }
+    return json;
+}
 
 // Every pose that shows the same surface, the reported one first; one if there is no symmetry.
 Json equivalents_json(const ModelLibrary& library, const RecognizedObject& object, double factor) {
@@ -52,29 +67,41 @@ Json recognition_json(const ModelLibrary& library, const Recognition& result,
                            {"confidence", object.confidence},
                            {"visible_fraction", object.visible_fraction},
                            {"inlier_rms", object.inlier_rms * factor},
-                           {"source", object.source}});
+                           {"source", object.source},
+                           {"round", object.round},
+                           {"features", features_json(object.features)}});
     }
     Json seconds = Json::object();
     for (const auto& [stage, time] : result.seconds) seconds[stage] = time;
-    return {
-        {"scene", scene}, {"unit", unit_name(unit)}, {"objects", objects}, {"seconds", seconds}};
+    return {{"scene", scene},
+            {"unit", unit_name(unit)},
+            {"objects", objects},
+            {"out_of_time", result.out_of_time},
+            {"seconds", seconds}};
 }
 
-void run_recognize(const RecognizeOptions& options) {
-    Stopwatch watch;
-    const ModelLibrary library = load_library(options.library);
-    const Recognizer recognizer(library);
-    const double load_seconds = watch.lap();
-    CloudFile file = read_cloud_file(options.scene);
-    if (const auto viewpoint = parse_viewpoint(options.viewpoint))
-        file.cloud.viewpoint = *viewpoint;
-    const Unit unit = parse_unit(options.unit).value_or(library.settings.unit);
-    const PointCloud scene = scaled(file.cloud, unit_factor(unit, library.settings.unit));
-    const double read_seconds = watch.lap();
-    Recognition result = recognizer.recognize(scene, options.settings);
-    result.seconds["load"] = load_seconds;
-    result.seconds["read"] = read_seconds;
-    const double factor = unit_factor(library.settings.unit, unit);
+// "crank, flange" as indices of models.
+std::vector<std::uint32_t> parse_models(const std::string& names, const ModelLibrary& library) {
+    std::vector<std::uint32_t> models;
+    std::istringstream list(names);
+    for (std::string name; std::getline(list >> std::ws, name, ',');) {
+        name.erase(name.find_last_not_of(" \t") + 1);
+        const auto at = std::find_if(library.models.begin(), library.models.end(),
+                                     [&](const Model& model) { return model.name == name; });
+        if (at == library.models.end()) {
+            std::string known;
+            for (const Model& model : library.models) known += " " + model.name;
+            throw InvalidInput(
+                fmt::format("--only: the library has no model \"{}\"; it has{}", name, known));
+        }
+        models.push_back(static_cast<std::uint32_t>(at - library.models.begin()));
+    }
+    if (models.empty()) throw InvalidInput("--only: no model is named");
+    return models;
+}
+
+void say_result(const Recognition& result, const RecognitionSettings& settings, Unit unit,
+                double factor) {
     std::vector<std::vector<std::string>> rows = {
         {"model", "confidence", "visible", fmt::format("rms {}", unit_name(unit)), "source"}};
     for (const RecognizedObject& object : result.objects) {
@@ -87,10 +114,17 @@ void run_recognize(const RecognizeOptions& options) {
     for (const auto& [stage, time] : result.seconds)
         times += fmt::format(" {} {:.3f}", stage, time);
     say("seconds:" + times);
+    if (result.out_of_time) {
+        say("the time limit ended the search: what is best so far is reported");
+    }
     if (result.objects.empty()) {
         say(fmt::format("no object of the library found with confidence {:g} or more",
-                        options.settings.min_confidence));
+                        settings.min_confidence));
     }
+}
+
+void write_pictures(const RecognizeOptions& options, const PointCloud& scene,
+                    const ModelLibrary& library, const Recognition& result, double factor) {
     if (!options.overlay.empty()) {
         write_cloud(options.overlay, scaled(overlay_cloud(scene, library, result), factor));
         say("overlay: " + options.overlay);
@@ -99,6 +133,37 @@ void run_recognize(const RecognizeOptions& options) {
         write_png(options.picture, draw_recognition(scene, library, result));
         say("picture: " + options.picture);
     }
+    if (!options.explain.empty()) {
+        const auto name = [](const std::string& path) {
+            return std::filesystem::path(path).filename().string();
+        };
+        write_text(explain_page({library, scene, result, options.settings, name(options.scene),
+                                 name(options.library)}),
+                   options.explain);
+        say("explanation: " + options.explain);
+    }
+}
+
+void run_recognize(const RecognizeOptions& options) {
+    Stopwatch watch;
+    const ModelLibrary library = load_library(options.library);
+    RecognitionSettings settings = options.settings;
+    if (!options.only.empty()) settings.only = parse_models(options.only, library);
+    settings.keep_candidates = !options.explain.empty();
+    const Recognizer recognizer(library);
+    const double load_seconds = watch.lap();
+    CloudFile file = read_cloud_file(options.scene);
+    if (const auto viewpoint = parse_viewpoint(options.viewpoint))
+        file.cloud.viewpoint = *viewpoint;
+    const Unit unit = parse_unit(options.unit).value_or(library.settings.unit);
+    const PointCloud scene = scaled(file.cloud, unit_factor(unit, library.settings.unit));
+    const double read_seconds = watch.lap();
+    Recognition result = recognizer.recognize(scene, settings);
+    result.seconds["load"] = load_seconds;
+    result.seconds["read"] = read_seconds;
+    const double factor = unit_factor(library.settings.unit, unit);
+    say_result(result, settings, unit, factor);
+    write_pictures(options, scene, library, result, factor);
     write_json(recognition_json(library, result, options.scene, unit, factor), options.common.json);
 }
 
@@ -119,6 +184,15 @@ void add_recognize(CLI::App& app) {
                         "picture of the scan with each object tinted and labeled to write (PNG)");
     command->add_option("--overlay", options->overlay,
                         "the scan with the placed models in color to write (PLY)");
+    command->add_option("--explain", options->explain,
+                        "why each object was reported and near misses were not (HTML)");
+    command
+        ->add_option("--time-limit", options->settings.time_limit,
+                     "seconds after which what is best so far is reported; 0: none")
+        ->capture_default_str()
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--only", options->only,
+                        "models to look for, separated by commas (default: all)");
     add_common(*command, options->common);
     command->callback([options] { run_recognize(*options); });
 }
