@@ -15,6 +15,11 @@ OSTRAKA = ""
 PARTS = ["cam", "hook", "tee"]
 
 
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
 def run(*arguments):
     return subprocess.run([OSTRAKA, *map(str, arguments)], stdin=subprocess.DEVNULL,
                           capture_output=True, text=True)
@@ -55,7 +60,7 @@ class Explain(unittest.TestCase):
         found, said = self.recognize("--explain", page)
         self.assertIn("explanation: " + page, said)
         self.assertTrue(found["objects"])
-        html = open(page, encoding="utf-8").read()
+        html = read(page)
         for number, thing in enumerate(found["objects"], 1):
             self.assertIn("%s #%d" % (thing["model"], number), html)
         self.assertEqual(html.count("<p>Reported: confidence"), len(found["objects"]))
@@ -80,7 +85,7 @@ class Explain(unittest.TestCase):
         found, said = self.recognize("--time-limit", "0.000001", "--explain", page)
         self.assertIs(found["out_of_time"], True)
         self.assertIn("the time limit ended the search: what is best so far is reported", said)
-        self.assertIn("The time limit ended the search", open(page, encoding="utf-8").read())
+        self.assertIn("The time limit ended the search", read(page))
         wrong = run("recognize", self.library, self.scan, "--time-limit", "-1")
         self.assertEqual(wrong.returncode, 2, wrong.stderr)
 

@@ -28,7 +28,7 @@ constexpr std::array<FeatureFacts, 13> kFacts = {{{"constant", "", 1.0},
                                                   {"turned", "fit", 0.03},
                                                   {"visible", "visible", 0.45},
                                                   {"area", "size", 1.25},
-                                                  {"cells", "size", 1.6},
+                                                  {"cells", "size", 1.2},
                                                   {"grip", "grip", 0.55},
                                                   {"open", "outline", 0.005},
                                                   {"sunk", "sunk", 0.0}}};
