@@ -308,6 +308,13 @@ void add_run(CLI::App& parent, const std::string& name, const std::string& help,
     add_scene_kind(*command, options->scenes);
     add_scene_options(*command, options->scenes, "the library's unit");
     add_scene_noise(*command, options->scenes, "the library's unit");
+    command->add_flag_callback(
+        "--viewpoint-unknown", [options] { options->settings.recognition.viewpoint_known = false; },
+        "recognize as if nobody knew where the sensor was: free space can't contradict");
+    command
+        ->add_option("--time-limit", options->settings.recognition.time_limit,
+                     "seconds for a scene, after which the best so far is taken; 0: none")
+        ->check(CLI::NonNegativeNumber);
     command->add_option("--scenes-of", options->scenes_of,
                         "make the scenes from this library's models instead: those that LIBRARY "
                         "lacks are unknown to it, and whatever it reports there is wrong");

@@ -189,6 +189,27 @@ TEST_F(Edit, AKeypointGraphIsStoredAndVoidAfterAChange) {
     EXPECT_FALSE(load_library(both).keypoint_graph.links.empty());
 }
 
+TEST_F(Edit, ConfidenceIsStoredAndVoidAfterAChange) {
+    const fs::path both = build("both", {0, 1});
+    const std::string before = verify_library(both).sha256;
+    EXPECT_FALSE(load_library(both).confidence.has_value());
+    ConfidenceModel model;
+    for (std::size_t i = 0; i < kFeatures; ++i)
+        model.weights[i] = 1.0 / (1.0 + static_cast<double>(i));
+    set_confidence(both, model);
+    ASSERT_TRUE(load_library(both).confidence.has_value());
+    EXPECT_EQ(load_library(both).confidence->weights, model.weights);
+    EXPECT_EQ(verify_library(both).sha256, before);
+    rename_model(both, name(0), "zzz");
+    EXPECT_FALSE(load_library(both).confidence.has_value());
+    rename_model(both, "zzz", name(0));
+    EXPECT_TRUE(load_library(both).confidence.has_value());
+    model.weights[2] = 1e9;  // damage
+    set_confidence(both, model);
+    EXPECT_THROW(load_library(both), FormatError);
+    EXPECT_FALSE(verify_library(both).problems.empty());
+}
+
 TEST_F(Edit, LibrariesOfFormat1AreConvertedByEditing) {
     const fs::path old = fs::path(OSTRAKA_TEST_DATA) / "format1.ostraka";
     const ModelLibrary before = load_library(old);

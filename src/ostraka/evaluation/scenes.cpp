@@ -99,7 +99,9 @@ SceneRecord record_of(const PoseJudge& judge, const TestScene& scene,
 SceneRecord try_scene(const Recognizer& recognizer, const PoseJudge& judge, const TestScene& scene,
                       const SceneSettings& settings) {
     const Stopwatch watch;
-    Recognition answer = recognizer.recognize(scene.cloud, settings.recognition);
+    RecognitionSettings recognition = settings.recognition;
+    recognition.viewpoint_known = recognition.viewpoint_known && scene.viewpoint_known;
+    Recognition answer = recognizer.recognize(scene.cloud, recognition);
     const double seconds = watch.seconds();
     SceneRecord record = record_of(judge, scene, std::move(answer.objects), settings);
     record.seconds = std::move(answer.seconds);

@@ -69,9 +69,9 @@ SceneRecord record_of(const PoseJudge& judge, const TestScene& scene,
 
 /// What counts as found.
 struct MatchSettings {
-    double max_adi = 0.10;        ///< in model diameters
-    double min_visible = 0.15;    ///< true objects less visible are ignored: neither hit nor miss
-    double min_confidence = 0.5;  ///< reports below it are ignored
+    double max_adi = 0.10;      ///< in model diameters
+    double min_visible = 0.15;  ///< true objects less visible are ignored: neither hit nor miss
+    double min_confidence = RecognitionSettings{}.min_confidence;  ///< others are ignored
 };
 
 struct Matching {

@@ -97,6 +97,8 @@ TestScene load_recorded(const RecordedScene& recorded, const ModelLibrary& libra
                         const std::vector<std::uint32_t>& indices, double factor) {
     TestScene scene{.name = recorded.name, .scene = recorded.scene, .image = recorded.image};
     scene.cloud = scaled(read_scan(recorded), factor);
+    scene.viewpoint_known =
+        recorded.depth || recorded.viewpoint || !scene.cloud.viewpoint.isZero(0.0F);
     scene.objects = truth_of(recorded, indices, factor);
     if (recorded.depth) {
         scene.camera = recorded.depth->camera;

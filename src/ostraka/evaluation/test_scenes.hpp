@@ -22,6 +22,7 @@ struct TestScene {
     PointCloud cloud;
     std::vector<TrueObject> objects;
     std::vector<std::uint32_t> labels;    ///< per point: index into objects, or kNoIndex
+    bool viewpoint_known = true;          ///< false: merged, or nobody says where the sensor was
     std::optional<PinholeCamera> camera;  ///< set: the cloud is organized, a pixel of it a point
 };
 

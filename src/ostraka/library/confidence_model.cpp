@@ -7,8 +7,8 @@ namespace ostraka {
 namespace {
 
 constexpr std::array<std::string_view, kFeatures> kNames = {
-    "constant", "agreement", "good_agreement", "misfit", "excess", "turned",
-    "visible",  "area",      "cells",          "grip",   "open",   "sunk"};
+    "constant", "agreement", "clearness", "misfit", "excess", "turned",
+    "visible",  "area",      "cells",     "grip",   "open",   "sunk"};
 
 }  // namespace
 
@@ -24,7 +24,7 @@ double ConfidenceModel::confidence(const Features& features) const {
 
 const ConfidenceModel& general_confidence() {
     static const ConfidenceModel model{
-        .weights = {-9.0, 3.5, 7.5, -0.6, -6.4, 3.4, 3.8, 0.1, 2.7, 4.8, -11.9, -2.6}};
+        .weights = {-7.1, -0.6, 4.8, -1.3, -5.5, 2.5, 5.0, 0.1, 2.2, 4.85, -10.8, -20.0}};
     return model;
 }
 

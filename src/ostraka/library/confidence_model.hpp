@@ -10,19 +10,19 @@ namespace ostraka {
 
 /// What a verified hypothesis is judged by. All are about 0 to 1.
 enum class Feature : std::uint8_t {
-    constant,        ///< 1
-    agreement,       ///< support as a share of what can be judged
-    good_agreement,  ///< what that exceeds 0.8 by
-    misfit,          ///< deviation of the scan from the model, in tolerances
-    excess,          ///< what that exceeds the scan's own roughness by
-    turned,          ///< mean of 1 - cosine between the normals of scan and model
-    visible,         ///< share of the silhouette that the scan shows, at most 0.5
-    area,            ///< logarithm of what supports, as an area in squared diameters
-    cells,           ///< logarithm of what supports, as cells of the range map
-    grip,            ///< how well what supports holds the model in place; 0: a plane
-    open,            ///< share of the outline where the scan's surface goes on
-    sunk,            ///< share that would be below the table
-    count            // how many there are
+    constant,   ///< 1
+    agreement,  ///< support as a share of what can be judged
+    clearness,  ///< its eighth power: 0.97 is much better than 0.9
+    misfit,     ///< deviation of the scan from the model, in tolerances
+    excess,     ///< what that exceeds the scan's own roughness by
+    turned,     ///< mean of 1 - cosine between the normals of scan and model
+    visible,    ///< share of the silhouette that the scan shows, at most 0.5
+    area,       ///< logarithm of what supports, as an area in squared diameters
+    cells,      ///< logarithm of what supports, as cells of the range map
+    grip,       ///< how well what supports holds the model in place; 0: a plane
+    open,       ///< share of the outline where the scan's surface goes on
+    sunk,       ///< share that would be below the table
+    count       // how many there are
 };
 inline constexpr std::size_t kFeatures = static_cast<std::size_t>(Feature::count);
 using Features = std::array<double, kFeatures>;

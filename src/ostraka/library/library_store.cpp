@@ -353,41 +353,6 @@ void LibraryStore::load_graph(ModelLibrary& library) {
     }
 }
 
-void LibraryStore::put_confidence(const ConfidenceModel& confidence) {
-    // The table came after format 2; readers that don't know it judge by the general model.
-    database_->run(
-        "CREATE TABLE IF NOT EXISTS confidence(feature TEXT PRIMARY KEY, models_sha256 TEXT NOT "
-        "NULL,"
-        " weight REAL NOT NULL) WITHOUT ROWID; DELETE FROM confidence;");
-    Statement insert(*database_, insertion("confidence", 3).c_str());
-    for (std::size_t i = 0; i < kFeatures; ++i) {
-        insert_row(insert, {std::string(feature_name(static_cast<Feature>(i))), models_digest()},
-                   {confidence.weights[i]});
-    }
-}
-
-bool LibraryStore::has_confidence() {
-    return database_->number("SELECT count(*) FROM sqlite_master WHERE name='confidence'") > 0;
-}
-
-void LibraryStore::load_confidence(ModelLibrary& library) {
-    if (!has_confidence()) return;
-    Statement select(*database_,
-                     "SELECT weight FROM confidence WHERE feature=? AND models_sha256=?");
-    ConfidenceModel model;
-    for (std::size_t i = 0; i < kFeatures; ++i) {
-        select.bind(1, std::string(feature_name(static_cast<Feature>(i))));
-        select.bind(2, models_digest());
-        if (!select.step()) return;
-        model.weights[i] = select.real(0);
-        if (!(std::abs(model.weights[i]) < 1e6)) {
-            throw FormatError(named_, "confidence", "a weight is out of range");
-        }
-        select.reset();
-    }
-    library.confidence = model;
-}
-
 std::vector<std::pair<std::string, std::string>> LibraryStore::checksums() {
     const auto digest = [&](const char* sql, std::size_t columns) {
         return digest_of(read_all(*database_, sql, columns));

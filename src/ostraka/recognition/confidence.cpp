@@ -8,7 +8,6 @@ namespace ostraka {
 namespace {
 
 constexpr std::size_t kMinSupport = 40;  // cells
-constexpr double kGoodAgreement = 0.8;
 constexpr double kEnoughVisible = 0.5;
 constexpr double kRoughness = 1.5;  // from a median to a deviation
 
@@ -27,7 +26,7 @@ Features features_of(const Verified& v, const Scan& scan, double tolerance) {
     const double cells = static_cast<double>(v.support) / static_cast<double>(kMinSupport);
     set(Feature::constant, 1.0);
     set(Feature::agreement, agreement);
-    set(Feature::good_agreement, std::max(0.0, agreement - kGoodAgreement));
+    set(Feature::clearness, std::pow(agreement, 8.0));
     set(Feature::misfit, v.inlier_rms / tolerance);
     set(Feature::excess, std::max(0.0, v.inlier_rms - kRoughness * scan.roughness) / tolerance);
     set(Feature::turned, v.turned);

@@ -2,6 +2,7 @@
 #include "ostraka/recognition/hypothesis.hpp"
 
 #include "ostraka/recognition/cell_check.hpp"
+#include "ostraka/recognition/merged_scan.hpp"
 
 namespace ostraka {
 namespace {
@@ -50,6 +51,7 @@ std::string_view source_name(HypothesisSource source) {
 
 Evidence gather_evidence(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
                          double tolerance, std::size_t samples) {
+    if (scan.merged) return gather_merged_evidence(scan, probe, T_scene_model, tolerance, samples);
     const Mat3f R = T_scene_model.linear().cast<float>();
     const Vec3f t = T_scene_model.translation().cast<float>();
     const Vec3f eye = scan.ranges.viewpoint();

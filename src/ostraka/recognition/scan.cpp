@@ -9,6 +9,7 @@
 #include "ostraka/base/error.hpp"
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/cloud/farthest_points.hpp"
+#include "ostraka/cloud/normal_orientation.hpp"
 #include "ostraka/cloud/normals.hpp"
 #include "ostraka/cloud/range_smoothing.hpp"
 #include "ostraka/cloud/resample.hpp"
@@ -64,6 +65,9 @@ void check_density(const PointCloud& cloud, double sampling) {
                     cloud.size(), sampling, kMinPoints));
 }
 
+constexpr double kMergedCell = 1.0;  // sampling distances: side of a cell of a merged scan's field
+constexpr double kMergedMargin = 4.0;  // sampling distances that the field reaches beyond the scan
+
 // What becomes of a scan's points.
 struct Sorted {
     PointCloud objects;               // what may be objects
@@ -116,6 +120,29 @@ double roughness_of(const PointCloud& cloud, const RangeMap& ranges) {
     return double{*middle};
 }
 
+Scan prepare_merged(const PointCloud& valid, double sampling,
+                    const std::vector<Vec3f>& viewpoints) {
+    PointCloud cloud = resample(valid, sampling);
+    cloud.normals = estimate_normals_within(cloud, kNormalRadius * sampling);
+    cloud = remove_invalid(cloud);
+    check_density(cloud, sampling);
+    orient_normals(cloud);
+    std::vector<RangeMap> views;
+    for (const Vec3f& viewpoint : viewpoints) {
+        PointCloud seen = valid;
+        seen.viewpoint = viewpoint;
+        views.emplace_back(seen, std::span<const float>(), PointCloud(), sampling);
+    }
+    SurfaceField field(cloud, kMergedCell * sampling, kMergedMargin * sampling);
+    std::vector<float> extents(cloud.size(), 0.0F);
+    return {.cloud = std::move(cloud),
+            .plane_extents = std::move(extents),
+            .ranges = RangeMap({}, {}, {}, sampling),
+            .merged = std::move(field),
+            .views = std::move(views),
+            .sampling = sampling};
+}
+
 }  // namespace
 
 Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
@@ -125,6 +152,9 @@ Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
     points.viewpoint = raw.viewpoint;
     const PointCloud valid = remove_invalid(points);
     check_size(valid, raw.size(), model_diameter);
+    if (!settings.viewpoint_known || !settings.viewpoints.empty()) {
+        return prepare_merged(valid, sampling, settings.viewpoints);
+    }
     Backdrop backdrop;
     if (settings.remove_plane) {
         backdrop = find_backdrop(valid, sampling, kSmallestExtent * model_diameter);

@@ -7,6 +7,7 @@
 
 #include "ostraka/recognition/range_map.hpp"
 #include "ostraka/recognition/settings.hpp"
+#include "ostraka/registration/surface_field.hpp"
 
 namespace ostraka {
 
@@ -19,10 +20,12 @@ struct TablePlane {
 struct Scan {
     PointCloud cloud;  ///< what may be objects: finite, about `sampling` apart, normals toward the
                        ///< viewpoint; without what is on a table or wall, or below the table
-    std::vector<float> plane_extents;  ///< of each point: how far the flat surface it is part of
-                                       ///< extends; 0: it isn't part of a large one
-    RangeMap ranges;                   ///< of the whole scan at full density
-    std::optional<TablePlane> table;   ///< if there is one
+    std::vector<float> plane_extents;    ///< of each point: how far the flat surface it is part of
+                                         ///< extends; 0: it isn't part of a large one
+    RangeMap ranges;                     ///< of the whole scan at full density; empty if merged
+    std::optional<SurfaceField> merged;  ///< of a merged scan: what is nearest to any place
+    std::vector<RangeMap> views;         ///< of a merged scan: one of each known viewpoint
+    std::optional<TablePlane> table;          ///< if there is one
     std::vector<char> explained;  ///< of each point: whether an object that was found already shows
                                   ///< there; empty: none was
     double sampling = 0.0;
@@ -32,6 +35,8 @@ struct Scan {
 
 /// @param raw        at any density; NaN points are "no return"; viewpoint set.
 /// @param sampling   the library's.
+/// A merged scan (RecognitionSettings::viewpoint_known, viewpoints) has its normals turned outward
+/// (normal_orientation.hpp); neither its noise nor its tables are removed.
 /// @param model_diameter  of the library's largest model: tables and walls are larger than that.
 /// @throws InvalidInput if fewer than 10 finite points remain, all points coincide, the scan's
 ///         extent makes its unit implausible, or the viewpoint lies on the scan.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ostraka/recognition/cell_check.hpp"
+#include "ostraka/recognition/merged_scan.hpp"
 
 namespace ostraka {
 namespace {
@@ -81,6 +82,7 @@ double Verified::agreement() const {
 
 Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hypothesis,
                 double tolerance, CellVerdicts* detail) {
+    if (scan.merged) return verify_merged(scan, probe, hypothesis, tolerance);
     Verified result;
     result.hypothesis = hypothesis;
     const Pose& T_scene_model = hypothesis.T_scene_model;

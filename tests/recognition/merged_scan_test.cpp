@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/recognition/merged_scan.hpp"
+
+#include "recognition/recognition_testing.hpp"
+
+namespace ostraka {
+namespace {
+
+using namespace recognition_testing;
+
+// A model seen from all sides, as if scans had been merged; some way off the origin.
+PointCloud all_around(std::uint32_t model, const Pose& T_scene_model) {
+    PointCloud cloud;
+    for (const Vec3f& point : library().models[model].surface.points) {
+        cloud.points.push_back((T_scene_model * point.cast<double>()).cast<float>());
+    }
+    return cloud;
+}
+
+Pose some_pose(std::uint64_t seed) {
+    Random random(seed);
+    Pose pose = Pose::Identity();
+    pose.linear() = random.rotation();
+    pose.translation() = 300.0 * random.direction();
+    return pose;
+}
+
+Scan merged(const PointCloud& cloud, const std::vector<Vec3f>& viewpoints = {}) {
+    return prepare_scan(cloud, library().settings.sampling, 200.0,
+                        {.viewpoint_known = false, .viewpoints = viewpoints});
+}
+
+TEST(MergedScan, ItsTruthIsSeenAllAround) {
+    for (const std::uint32_t model : {kCorner, kPlate}) {
+        const Pose truth = some_pose(model + 3);
+        const Scan scan = merged(all_around(model, truth));
+        const Verified v =
+            verify(scan, probe(model), {.model = model, .T_scene_model = truth}, tolerance());
+        EXPECT_GT(v.visible_fraction, 0.85);
+        EXPECT_GT(v.agreement(), 0.9);
+        EXPECT_LT(v.inlier_rms, 0.3 * library().settings.sampling);
+        const Pose off = disturbed(truth, models().shapes[model].center, 0.5, 20.0, 5);
+        const Verified w =
+            verify(scan, probe(model), {.model = model, .T_scene_model = off}, tolerance());
+        EXPECT_LT(w.agreement(), 0.7 * v.agreement());
+        EXPECT_LT(quick_score(gather_evidence(scan, probe(model), off, tolerance())),
+                  quick_score(gather_evidence(scan, probe(model), truth, tolerance())));
+    }
+}
+
+TEST(MergedScan, OnlyAKnownViewpointContradicts) {
+    const Pose truth = some_pose(8);
+    const PointCloud cloud = all_around(kPlate, truth);
+    const Vec3d center = truth * models().shapes[kPlate].center;
+    const Vec3d eye = center + 600.0 * Vec3d(0.3, -0.4, 0.86);
+    // The model as well between the sensor and where it is: the sensor saw through it.
+    Pose nearer = truth;
+    nearer.translation() += 250.0 * (eye - center).normalized();
+    const Evidence unknown = gather_evidence(merged(cloud), probe(kPlate), nearer, tolerance());
+    EXPECT_EQ(unknown.violation, 0);
+    EXPECT_GT(unknown.missing, unknown.visible * 9 / 10);
+    const Evidence known =
+        gather_evidence(merged(cloud, {eye.cast<float>()}), probe(kPlate), nearer, tolerance());
+    EXPECT_GT(known.violation, known.visible / 8);
+    EXPECT_EQ(known.support, 0);
+}
+
+TEST(MergedScan, AnObjectIsRecognizedWhereverTheSensorsWere) {
+    const Recognizer recognizer(library());
+    const Pose truth = some_pose(21);
+    const PointCloud cloud = all_around(kCorner, truth);
+    const Recognition answer =
+        recognizer.recognize(cloud, {.min_confidence = 0.1, .viewpoint_known = false});
+    ASSERT_EQ(answer.objects.size(), 1U);
+    EXPECT_EQ(answer.objects[0].model_index, kCorner);
+    EXPECT_LT(pose_error(kCorner, truth, answer.objects[0].T_scene_model), 0.02);
+}
+
+}  // namespace
+}  // namespace ostraka
