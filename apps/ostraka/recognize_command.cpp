@@ -144,6 +144,28 @@ void write_pictures(const RecognizeOptions& options, const PointCloud& scene,
     }
 }
 
+// "unknown", one viewpoint, or several of a merged scan, separated by semicolons.
+// @param factor  from the scan's unit to the library's.
+void set_viewpoints(const std::string& text, double factor, PointCloud& cloud,
+                    RecognitionSettings& settings) {
+    if (text == "unknown") {
+        settings.viewpoint_known = false;
+        say("the viewpoint is unknown: free space can't contradict, so more may be reported "
+            "wrongly");
+        return;
+    }
+    if (text.find(';') == std::string::npos) {
+        if (const auto viewpoint = parse_viewpoint(text)) cloud.viewpoint = *viewpoint;
+        return;
+    }
+    std::istringstream parts(text);
+    for (std::string part; std::getline(parts, part, ';');) {
+        const auto viewpoint = parse_viewpoint(part);
+        if (!viewpoint) throw CLI::ValidationError("--viewpoint", "one of them is empty");
+        settings.viewpoints.push_back(*viewpoint * static_cast<float>(factor));
+    }
+}
+
 void run_recognize(const RecognizeOptions& options) {
     Stopwatch watch;
     const ModelLibrary library = load_library(options.library);
@@ -153,9 +175,9 @@ void run_recognize(const RecognizeOptions& options) {
     const Recognizer recognizer(library);
     const double load_seconds = watch.lap();
     CloudFile file = read_cloud_file(options.scene);
-    if (const auto viewpoint = parse_viewpoint(options.viewpoint))
-        file.cloud.viewpoint = *viewpoint;
     const Unit unit = parse_unit(options.unit).value_or(library.settings.unit);
+    set_viewpoints(options.viewpoint, unit_factor(unit, library.settings.unit), file.cloud,
+                   settings);
     const PointCloud scene = scaled(file.cloud, unit_factor(unit, library.settings.unit));
     const double read_seconds = watch.lap();
     Recognition result = recognizer.recognize(scene, settings);
@@ -175,7 +197,11 @@ void add_recognize(CLI::App& app) {
     command->add_option("library", options->library, "library made by `ostraka build`")->required();
     command->add_option("scene", options->scene, "scan: PLY, PCD, XYZ or TXT")->required();
     add_unit(*command, options->unit, "unit of the numbers in the scan (default: the library's)");
-    add_viewpoint(*command, options->viewpoint);
+    command->add_option(
+        "--viewpoint", options->viewpoint,
+        "position of the sensor as x,y,z, in the scan's frame and unit (default: what the file "
+        "says, else the origin); of a scan merged of several: all of them, as \"x,y,z;x,y,z\", or "
+        "unknown");
     command
         ->add_option("--min-confidence", options->settings.min_confidence,
                      "objects below it are not reported")
