@@ -34,13 +34,15 @@ std::vector<Example> drawn(const ConfidenceModel& truth, std::size_t count, std:
 ConfidenceModel some_model() {
     ConfidenceModel model;
     Random random(6);
-    for (double& weight : model.weights) weight = random.uniform(-3.0, 3.0);
+    double sum = 0.0;
+    for (double& weight : model.weights) sum += weight = random.uniform(-3.0, 3.0);
+    model.weights[0] -= 0.5 * (sum + model.weights[0]);  // as many right as wrong, about
     return model;
 }
 
 TEST(FitConfidence, FindsTheFunctionThatMadeTheExamples) {
     const ConfidenceModel truth = some_model();
-    const ConfidenceModel fit = fit_confidence(drawn(truth, 40'000, 1), {}, 1e-6);
+    const ConfidenceModel fit = fit_confidence(drawn(truth, 100'000, 1), {}, 1e-6);
     for (std::size_t i = 0; i < kFeatures; ++i) {
         EXPECT_NEAR(fit.weights[i], truth.weights[i], 0.25);
     }

@@ -10,6 +10,9 @@
 namespace ostraka {
 namespace {
 
+// The confidences below are made up around one half.
+const MatchSettings kFromHalf{.min_confidence = 0.5};
+
 using namespace evaluation_testing;
 
 TEST(Match, CountsHitsMissesAndWrongReports) {
@@ -17,7 +20,7 @@ TEST(Match, CountsHitsMissesAndWrongReports) {
     const SceneRecord record = record_for(
         library, {truth_at(0, 0.0, 0.9), truth_at(1, 50.0, 0.5), truth_at(0, 100.0, 0.8)},
         {report_at(0, 0.01), report_at(0, 50.0), report_at(1, 500.0)});
-    const Matching matching = match(record, library);
+    const Matching matching = match(record, library, kFromHalf);
     ASSERT_EQ(matching.hits.size(), 1U);
     EXPECT_EQ(matching.hits[0].truth, 0U);
     EXPECT_LE(matching.hits[0].adi, 0.0011);
@@ -31,7 +34,7 @@ TEST(Match, ATrueObjectIsHitOnce) {
     const ModelLibrary library = two_models();
     const SceneRecord record = record_for(library, {truth_at(0, 0.0, 0.9)},
                                           {report_at(0, 0.2, 0.95), report_at(0, 0.0, 0.6)});
-    const Matching matching = match(record, library);
+    const Matching matching = match(record, library, kFromHalf);
     ASSERT_EQ(matching.hits.size(), 1U);
     EXPECT_NEAR(matching.hits[0].adi, 0.0, 1e-9);  // the nearer of the two
     EXPECT_EQ(record.reports[matching.hits[0].report].confidence, 0.6);
@@ -43,19 +46,20 @@ TEST(Match, HardlyVisibleObjectsAreNeitherHitNorMiss) {
     const ModelLibrary library = two_models();
     const SceneRecord record =
         record_for(library, {truth_at(0, 0.0, 0.14), truth_at(1, 50.0, 0.1)}, {report_at(0, 0.0)});
-    const Matching matching = match(record, library);
+    const Matching matching = match(record, library, kFromHalf);
     EXPECT_TRUE(matching.hits.empty());
     EXPECT_TRUE(matching.misses.empty());
     EXPECT_TRUE(matching.wrong.empty());
-    EXPECT_EQ(match(record, library, {.min_visible = 0.1}).hits.size(), 1U);
-    EXPECT_EQ(match(record, library, {.min_visible = 0.1}).misses.size(), 1U);
+    EXPECT_EQ(match(record, library, {.min_visible = 0.1, .min_confidence = 0.5}).hits.size(), 1U);
+    EXPECT_EQ(match(record, library, {.min_visible = 0.1, .min_confidence = 0.5}).misses.size(),
+              1U);
 }
 
 TEST(Match, ReportsOfLittleConfidenceAreIgnored) {
     const ModelLibrary library = two_models();
     const SceneRecord record = record_for(library, {truth_at(0, 0.0, 0.9)},
                                           {report_at(0, 0.0, 0.3), report_at(1, 70.0, 0.2)});
-    const Matching strict = match(record, library);
+    const Matching strict = match(record, library, kFromHalf);
     EXPECT_TRUE(strict.hits.empty());
     EXPECT_TRUE(strict.wrong.empty());
     EXPECT_EQ(strict.misses.size(), 1U);
@@ -69,8 +73,10 @@ TEST(Match, APoseThatIsTooFarOffIsWrong) {
     const SceneRecord record = record_for(library, {truth_at(0, 0.0, 0.9)}, {report_at(0, 4.0)});
     ASSERT_EQ(record.pairs.size(), 1U);
     const double adi = record.pairs[0].adi;
-    EXPECT_EQ(match(record, library, {.max_adi = 0.99 * adi}).wrong.size(), 1U);
-    EXPECT_EQ(match(record, library, {.max_adi = 1.01 * adi}).hits.size(), 1U);
+    EXPECT_EQ(match(record, library, {.max_adi = 0.99 * adi, .min_confidence = 0.5}).wrong.size(),
+              1U);
+    EXPECT_EQ(match(record, library, {.max_adi = 1.01 * adi, .min_confidence = 0.5}).hits.size(),
+              1U);
 }
 
 TEST(PoseJudge, MeasuresWhatIsNearby) {
@@ -138,7 +144,7 @@ std::vector<SceneRecord> two_scenes(const ModelLibrary& library) {
 TEST(Summarize, AddsUp) {
     const ModelLibrary library = two_models();
     const std::vector<SceneRecord> records = two_scenes(library);
-    const SceneSummary summary = summarize(records, library);
+    const SceneSummary summary = summarize(records, library, kFromHalf);
     EXPECT_EQ(summary.objects, 4U);
     EXPECT_EQ(summary.hits, 3U);
     EXPECT_EQ(summary.wrong, 1U);
@@ -147,7 +153,7 @@ TEST(Summarize, AddsUp) {
     // All hits are of one scene: a draw without it has none.
     EXPECT_DOUBLE_EQ(summary.recall.low, 0.0);
     EXPECT_DOUBLE_EQ(summary.recall.high, 1.0);
-    EXPECT_DOUBLE_EQ(summary.median_adi.value, match(records[0], library).hits[1].adi);
+    EXPECT_DOUBLE_EQ(summary.median_adi.value, match(records[0], library, kFromHalf).hits[1].adi);
     EXPECT_DOUBLE_EQ(summary.seconds, 2.0);
     EXPECT_DOUBLE_EQ(summarize({}, library).precision.value, 1.0);
     EXPECT_DOUBLE_EQ(summarize({}, library).recall.value, 0.0);
@@ -164,25 +170,25 @@ TEST(RecallBins, AddUpToAllObjectsThatCount) {
     const std::vector<SceneRecord> records = two_scenes(library);
     // Hidden: 0.05, 0.45, 0.15 (hits) and 0.65 (missed); the object that is 0.05 visible is
     // ignored.
-    const auto occlusion = recall_by_occlusion(records, library, {}, 10);
+    const auto occlusion = recall_by_occlusion(records, library, kFromHalf, 10);
     EXPECT_EQ(objects_of(occlusion), (std::vector<std::size_t>{1, 1, 0, 0, 1, 0, 1, 0, 0, 0}));
     EXPECT_DOUBLE_EQ(occlusion[4].recall.value, 1.0);
     EXPECT_DOUBLE_EQ(occlusion[6].recall.value, 0.0);
     EXPECT_DOUBLE_EQ(occlusion[6].low, 0.6);
     EXPECT_DOUBLE_EQ(occlusion[6].high, 0.7);
     // Clutter: 0.05, 0.45, 0.5 (on a border: it belongs to the upper bin) and 1 (to the last one).
-    const auto clutter = recall_by_clutter(records, library, {}, 10);
+    const auto clutter = recall_by_clutter(records, library, kFromHalf, 10);
     EXPECT_EQ(objects_of(clutter), (std::vector<std::size_t>{1, 0, 0, 0, 1, 1, 0, 0, 0, 1}));
-    EXPECT_EQ(objects_of(recall_by_clutter(records, library, {}, 2)),
+    EXPECT_EQ(objects_of(recall_by_clutter(records, library, kFromHalf, 2)),
               (std::vector<std::size_t>{2, 2}));
-    EXPECT_DOUBLE_EQ(recall_by_clutter(records, library, {}, 2)[1].recall.value, 0.5);
+    EXPECT_DOUBLE_EQ(recall_by_clutter(records, library, kFromHalf, 2)[1].recall.value, 0.5);
 }
 
 TEST(Reliability, SaysHowManyOfTheReportsOfAConfidenceAreRight) {
     const ModelLibrary library = two_models();
     const std::vector<SceneRecord> records = two_scenes(library);
     // Ten bins: 0.05 wrong, 0.55 right, 0.65 wrong, 0.85 and 0.95 right.
-    const auto fine = reliability(records, library, {}, 10);
+    const auto fine = reliability(records, library, kFromHalf, 10);
     ASSERT_EQ(fine.size(), 5U);
     std::vector<double> right;
     for (const ReliabilityBin& bin : fine) {
@@ -191,7 +197,7 @@ TEST(Reliability, SaysHowManyOfTheReportsOfAConfidenceAreRight) {
     }
     EXPECT_EQ(right, (std::vector<double>{0.0, 1.0, 0.0, 1.0, 1.0}));
     // Two bins: reports below MatchSettings::min_confidence are looked at, too.
-    const auto coarse = reliability(records, library, {}, 2);
+    const auto coarse = reliability(records, library, kFromHalf, 2);
     ASSERT_EQ(coarse.size(), 2U);
     EXPECT_EQ(coarse[0].reports, 1U);
     EXPECT_EQ(coarse[1].reports, 4U);
@@ -205,7 +211,7 @@ TEST(Confusion, RowsAddUpToTheTrueObjects) {
     // A right model in a wrong pose was not recognized.
     records.push_back(record_for(library, {truth_at(1, 0.0, 0.9)}, {report_at(1, 4.5)}));
     // Row a: two hits. Row b: taken for a once, right once, once in a wrong pose.
-    EXPECT_EQ(confusion_matrix(records, library, {}),
+    EXPECT_EQ(confusion_matrix(records, library, kFromHalf),
               (std::vector<double>{2.0, 0.0, 0.0, 1.0, 1.0, 1.0}));
 }
 

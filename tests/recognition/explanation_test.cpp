@@ -71,7 +71,7 @@ TEST(Explanation, OfATwinNamesTheObjectItLostTo) {
     const double diameter = library().models[kCorner].shape.diameter;
     test.report(test.truth());
     test.add(test.moved(0.1 * diameter * Vec3d::UnitX()), 0);
-    test.recognition.candidates.back().confidence = 0.7;
+    test.recognition.candidates.back().confidence = 0.9;  // enough to be reported
     const auto explained = test.explained();
     ASSERT_EQ(explained.size(), 2U);
     EXPECT_EQ(explained[1].outcome, Outcome::lost);

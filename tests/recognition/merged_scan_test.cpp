@@ -39,7 +39,7 @@ TEST(MergedScan, ItsTruthIsSeenAllAround) {
         EXPECT_GT(v.visible_fraction, 0.85);
         EXPECT_GT(v.agreement(), 0.9);
         EXPECT_LT(v.inlier_rms, 0.3 * library().settings.sampling);
-        const Pose off = disturbed(truth, models().shapes[model].center, 0.5, 20.0, 5);
+        const Pose off = disturbed(truth, models().shapes[model].center, 1.2, 30.0, 5);
         const Verified w =
             verify(scan, probe(model), {.model = model, .T_scene_model = off}, tolerance());
         EXPECT_LT(w.agreement(), 0.7 * v.agreement());
