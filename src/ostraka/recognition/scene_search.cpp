@@ -35,6 +35,11 @@ void mark_points(const Verified& object, const ModelProbe& probe, Scan& scan) {
     }
 }
 
+// A library's own weights were learned from scans of one viewpoint.
+const ConfidenceModel& weights_for(const ModelLibrary& library, const Scan& scan) {
+    return library.confidence && !scan.merged ? *library.confidence : general_confidence();
+}
+
 }  // namespace
 
 SceneSearch::SceneSearch(const EntryIndex& index, std::span<const ModelProbe> probes, Scan scan,
@@ -44,7 +49,7 @@ SceneSearch::SceneSearch(const EntryIndex& index, std::span<const ModelProbe> pr
       scan_(std::move(scan)),
       settings_(settings),
       since_start_(since_start),
-      confidence_(index.library().confidence.value_or(general_confidence())),
+      confidence_(weights_for(index.library(), scan_)),
       proposed_(probes.size()) {}
 
 void SceneSearch::run() {
