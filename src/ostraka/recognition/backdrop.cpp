@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "ostraka/cloud/normals.hpp"
-#include "ostraka/cloud/range_smoothing.hpp"
 #include "ostraka/cloud/resample.hpp"
 
 namespace ostraka {
@@ -67,7 +66,9 @@ double extent_of(const PlanePiece& a, const PlanePiece& b) {
 FlatPiece with_surface(const PlanePiece& piece, const std::vector<PlanePiece>& all,
                        const PointCloud& coarse, double sampling) {
     // The longer side: of a disk, too, no more than it is.
-    FlatPiece flat{.plane = piece, .extent = piece.extents.maxCoeff()};
+    FlatPiece flat{.plane = piece,
+                   .T_piece_cloud = piece.T_cloud_piece.inverse(Eigen::Isometry),
+                   .extent = piece.extents.maxCoeff()};
     flat.last = is_last(coarse, piece, kBehind * sampling);
     std::size_t points = 0;
     for (const PlanePiece& other : all) {
@@ -89,7 +90,7 @@ double Backdrop::extent_at(const Vec3f& point) const {
     for (const FlatPiece& piece : pieces) {
         const double height = piece.plane.normal.dot(point.cast<double>()) - piece.plane.offset;
         if (std::abs(height) > slack || piece.extent <= extent) continue;
-        const Vec3d at = piece.plane.T_cloud_piece.inverse(Eigen::Isometry) * point.cast<double>();
+        const Vec3d at = piece.T_piece_cloud * point.cast<double>();
         const double margin = kCoarse * slack;
         if (std::abs(at.x()) < 0.5 * piece.plane.extents.x() + margin &&
             std::abs(at.y()) < 0.5 * piece.plane.extents.y() + margin) {
@@ -108,9 +109,8 @@ const FlatPiece* Backdrop::table(double extent) const {
     return best;
 }
 
-Backdrop find_backdrop(const PointCloud& scan, double sampling, double least) {
+Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, double least) {
     Backdrop backdrop;
-    const double noise = measure_range_noise(scan, sampling).deviation;
     backdrop.slack = std::max(sampling, kNoiseSlack * noise);
     const PointCloud coarse = thinned(scan, kCoarse * sampling);
     if (coarse.size() < 3) return backdrop;

@@ -3,7 +3,6 @@
 // thinned scan, as nothing else needs to be done with the many points on them.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "ostraka/segmentation/plane_pieces.hpp"
@@ -13,6 +12,7 @@ namespace ostraka {
 /// A connected flat piece of the scan.
 struct FlatPiece {
     PlanePiece plane;
+    Pose T_piece_cloud = Pose::Identity();  ///< inverse of the plane's own
     double extent = 0.0;  ///< of the surface it is part of, scan's unit: coplanar pieces are one
                           ///< surface, seen between the objects before it, where hardly anything of
                           ///< the scan lies behind them (the tops of two equal boxes are not)
@@ -34,7 +34,8 @@ struct Backdrop {
 
 /// @param scan      finite points of any density; viewpoint set.
 /// @param sampling  distance that details have; pieces are found at several times that.
+/// @param noise     deviation of its depth.
 /// @param least     extent of the smallest surface of interest.
-Backdrop find_backdrop(const PointCloud& scan, double sampling, double least);
+Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, double least);
 
 }  // namespace ostraka

@@ -22,7 +22,7 @@ Mat3f rotation_to(const Vec3d& forward) {
 }  // namespace
 
 RangeMap::RangeMap(const PointCloud& raw, std::span<const float> wall_extents,
-                   const PointCloud& resampled, double sampling)
+                   const PointCloud& resampled, double side)
     : viewpoint_(raw.viewpoint) {
     std::vector<float> ranges;
     Vec3d forward = Vec3d::Zero();
@@ -50,7 +50,7 @@ RangeMap::RangeMap(const PointCloud& raw, std::span<const float> wall_extents,
         low = low.cwiseMin(at);
         high = high.cwiseMax(at);
     }
-    cells_per_radian_ = static_cast<float>(2.0 * double{*middle} / sampling);
+    cells_per_radian_ = static_cast<float>(2.0 * double{*middle} / side);
     const Vec2f extent = high - low;
     const double cells = double{extent.x()} * double{extent.y()} * double{cells_per_radian_} *
                          double{cells_per_radian_};

@@ -30,9 +30,9 @@ class RangeMap {
     /// @param resampled  the same scan without walls and tables at the library's sampling distance;
     /// without normals no cell
     ///                   is steady.
-    /// @param sampling   that distance: the side of a cell at the scan's median distance.
+    /// @param side       of a cell at the scan's median distance.
     RangeMap(const PointCloud& raw, std::span<const float> wall_extents,
-             const PointCloud& resampled, double sampling);
+             const PointCloud& resampled, double side);
 
     /// The number of the cell that shows `point`, or kNoIndex outside the map.
     std::uint32_t cell_of(const Vec3f& point) const {

@@ -68,6 +68,13 @@ void check_density(const PointCloud& cloud, double sampling) {
 constexpr double kMergedCell = 1.0;  // sampling distances: side of a cell of a merged scan's field
 constexpr double kMergedMargin = 4.0;  // sampling distances that the field reaches beyond the scan
 
+// Planes fitted to curved surface move it: noise is only taken out where it would hide the shape,
+// and as little as will do. What is left averages out over a whole object.
+constexpr double kSmoothTarget = 0.35;  // deviation left in each point, in sampling distances
+constexpr double kSmoothRadius = 1.0;   // of the window, in sampling distances
+constexpr double kNormalPitches = 1.8;  // radius of the planes that normals come from, in distances
+                                        // of pixels, where these are far apart: the eight around
+
 // What becomes of a scan's points.
 struct Sorted {
     PointCloud objects;               // what may be objects
@@ -99,9 +106,13 @@ Sorted sort_points(const PointCloud& scan, const Backdrop& backdrop, const FlatP
 }
 
 // At the library's density, with normals.
-PointCloud at_density(const PointCloud& points, double sampling) {
-    PointCloud cloud = resample(smooth_ranges(points, {.spacing = sampling}), sampling);
-    cloud.normals = estimate_normals_within(cloud, kNormalRadius * sampling);
+// @param pitch  distance between pixels of the scan.
+PointCloud at_density(const PointCloud& points, double sampling, double pitch) {
+    const RangeSmoothingSettings smoothing{
+        .spacing = sampling, .target = kSmoothTarget, .max_radius = kSmoothRadius};
+    PointCloud cloud = resample(smooth_ranges(points, smoothing), sampling);
+    const double radius = std::max(kNormalRadius * sampling, kNormalPitches * pitch);
+    cloud.normals = estimate_normals_within(cloud, radius);
     return remove_invalid(cloud);
 }
 
@@ -156,23 +167,27 @@ Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
         return prepare_merged(valid, sampling, settings.viewpoints);
     }
     Backdrop backdrop;
+    const RangeNoise noise = measure_range_noise(valid, sampling);
     if (settings.remove_plane) {
-        backdrop = find_backdrop(valid, sampling, kSmallestExtent * model_diameter);
+        backdrop =
+            find_backdrop(valid, sampling, noise.deviation, kSmallestExtent * model_diameter);
     }
     const double wall_extent = kWallExtent * model_diameter;
     const FlatPiece* table = backdrop.table(wall_extent);
     const Sorted sorted = sort_points(valid, backdrop, table, wall_extent);
-    PointCloud cloud = at_density(sorted.objects, sampling);
+    PointCloud cloud = at_density(sorted.objects, sampling, noise.pitch);
     if (backdrop.pieces.empty()) check_density(cloud, sampling);
     std::vector<float> extents(cloud.size());
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         extents[i] = static_cast<float>(backdrop.extent_at(cloud.points[i]));
     }
-    RangeMap ranges(valid, sorted.wall_extents, cloud, sampling);
+    const double cell = std::max(sampling, noise.pitch);
+    RangeMap ranges(valid, sorted.wall_extents, cloud, cell);
     Scan scan{.cloud = std::move(cloud),
               .plane_extents = std::move(extents),
               .ranges = std::move(ranges),
-              .sampling = sampling};
+              .sampling = sampling,
+              .cell = cell};
     scan.roughness = roughness_of(scan.cloud, scan.ranges);
     if (table != nullptr) scan.table = TablePlane{table->plane.normal, table->plane.offset};
     return scan;

@@ -25,10 +25,11 @@ struct Scan {
     RangeMap ranges;                     ///< of the whole scan at full density; empty if merged
     std::optional<SurfaceField> merged;  ///< of a merged scan: what is nearest to any place
     std::vector<RangeMap> views;         ///< of a merged scan: one of each known viewpoint
-    std::optional<TablePlane> table;          ///< if there is one
+    std::optional<TablePlane> table;     ///< if there is one
     std::vector<char> explained;  ///< of each point: whether an object that was found already shows
                                   ///< there; empty: none was
     double sampling = 0.0;
+    double cell = 0.0;       ///< side of a cell of the range map at the scan's median distance
     double roughness = 0.0;  ///< what noise is left in smooth surface: median distance of a point
                              ///< from the tangent plane of one beside it; scan's unit
 };

@@ -115,7 +115,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
         if (check.verdict == CellVerdict::support) result.cells.push_back(window[i]);
     }
     add_shares(sums, result);
-    const double cell_area = scan.sampling * scan.sampling;
+    const double cell_area = scan.cell * scan.cell;
     result.area =
         static_cast<double>(result.support) * cell_area / (shape.diameter * shape.diameter);
     result.open = open_share(scan, window, verdicts);
