@@ -95,18 +95,6 @@ void check_cases(const SceneCases& cases) {
     if (!parse_unit(cases.unit)) throw InvalidInput("--unit: mm, cm, m or in");
 }
 
-PinholeCamera resized(PinholeCamera camera, int width) {
-    if (width == 0) return camera;
-    const double factor = static_cast<double>(width) / camera.width;
-    camera.width = width;
-    camera.height = static_cast<int>(camera.height * factor);
-    camera.fx *= factor;
-    camera.fy *= factor;
-    camera.cx = (camera.width - 1) / 2.0;
-    camera.cy = (camera.height - 1) / 2.0;
-    return camera;
-}
-
 SensorModel sensor_of(const SceneCases& cases) {
     SensorModel sensor;
     sensor.ranging.noise = cases.noise;

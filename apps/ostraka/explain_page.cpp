@@ -140,8 +140,9 @@ void add_confidence(PageContent& page, const ExplainedScan& scan) {
         "Confidence is the probability that a report is right: of objects reported at 0.9, nine in "
         "ten are right. --min-confidence is the least that is reported: a higher one gives fewer "
         "wrong reports and misses more objects.");
+    const std::optional<ConfidenceModel>& own = scan.library.confidence;
     page.paragraph(
-        scan.library.confidence
+        own && own->weights == scan.recognition.judge.weights
             ? "The weights are this library's own, fitted to its models by `ostraka calibrate`."
             : "The weights are the general ones, fitted to other parts. `ostraka calibrate` fits "
               "them to this library's models, and knows which of these are easily mistaken.");
@@ -162,7 +163,6 @@ void add_time(PageContent& page, const Recognition& result) {
 void add_explanations(PageContent& page, const ExplainedScan& scan,
                       const std::vector<Explanation>& all,
                       const std::vector<VerdictPicture>& pictures) {
-    const ConfidenceModel confidence = scan.library.confidence.value_or(general_confidence());
     const std::size_t reported = scan.recognition.objects.size();
     for (std::size_t i = 0; i <= all.size(); ++i) {
         if (i == 0) {
@@ -180,7 +180,7 @@ void add_explanations(PageContent& page, const ExplainedScan& scan,
                     : "The most confident hypotheses that were not reported, the best of each "
                       "model and place.");
         }
-        if (i < all.size()) add_one(page, all[i], pictures[i], confidence);
+        if (i < all.size()) add_one(page, all[i], pictures[i], scan.recognition.judge);
     }
 }
 

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <numeric>
-
 #include "ostraka/base/error.hpp"
 #include "ostraka/io/data_set.hpp"
 
@@ -18,25 +16,6 @@ std::string sensor_names() {
             fmt::format("{}{}: {}", names.empty() ? "" : "; ", preset.name, preset.description);
     }
     return names;
-}
-
-// A camera with the given one's field of view and another number of pixels.
-PinholeCamera resized(PinholeCamera camera, int width) {
-    if (width == 0) return camera;
-    const double factor = static_cast<double>(width) / camera.width;
-    camera.height = static_cast<int>(camera.height * factor);
-    camera.width = width;
-    camera.fx *= factor;
-    camera.fy *= factor;
-    camera.cx = (camera.width - 1) / 2.0;
-    camera.cy = (camera.height - 1) / 2.0;
-    return camera;
-}
-
-double mean_diameter_of(const SceneModels& models) {
-    std::vector<std::uint32_t> all(models.meshes.size());
-    std::iota(all.begin(), all.end(), 0U);
-    return mean_diameter(models, all);
 }
 
 // From the sensor, in mean diameters: as asked for, or so that the sensor's image shows as much as
@@ -58,12 +37,11 @@ std::optional<ModelChoice> choice_of(const SceneOptions& options) {
 }
 
 BinSettings bin_of(const SceneOptions& options, double diameter) {
-    if (options.bin.empty()) {
-        return {2.6 * diameter, 1.8 * diameter, 0.9 * diameter, 0.05 * diameter};
-    }
+    const BinSettings usual = usual_bin(diameter);
+    if (options.bin.empty()) return usual;
     const std::vector<double> sides = parse_numbers(options.bin, "--bin");
     if (sides.size() != 3) throw CLI::ValidationError("--bin", "needs length,width,height");
-    BinSettings bin{sides[0], sides[1], sides[2], 0.05 * diameter};
+    BinSettings bin{sides[0], sides[1], sides[2], usual.wall};
     check(bin);
     return bin;
 }
@@ -71,7 +49,7 @@ BinSettings bin_of(const SceneOptions& options, double diameter) {
 DropScenes drop_recipe(const SceneOptions& options, const SceneModels& models, Unit unit) {
     DropScenes recipe{.seed = options.seed};
     const bool in_bin = options.kind == "bin";
-    const double diameter = mean_diameter_of(models);
+    const double diameter = mean_diameter(models);
     recipe.objects = options.objects > 0 ? options.objects : in_bin ? 15 : 8;
     recipe.choice = choice_of(options).value_or(ModelChoice::in_turns);
     if (in_bin) {
@@ -98,7 +76,7 @@ TabletopScenes tabletop_recipe(const SceneOptions& options, const SceneModels& m
     recipe.settings.sensor = sensor_of(options, unit, recipe.settings.camera);
     recipe.settings.distance =
         distance_in_diameters(options, recipe.settings.distance, own, recipe.settings.camera,
-                              recipe.settings.sensor, mean_diameter_of(models));
+                              recipe.settings.sensor, mean_diameter(models));
     return recipe;
 }
 
@@ -238,7 +216,7 @@ SceneRecipe recipe_of(const SceneOptions& options, const SceneModels& models, Un
     const PinholeCamera own = recipe.camera;
     recipe.sensor = sensor_of(options, unit, recipe.camera);
     recipe.distance = distance_in_diameters(options, recipe.distance, own, recipe.camera,
-                                            recipe.sensor, mean_diameter_of(models));
+                                            recipe.sensor, mean_diameter(models));
     return recipe;
 }
 

@@ -95,6 +95,28 @@ TEST(SmoothRanges, ADepthEdgeStaysSharp) {
     EXPECT_LT(error(smooth, step), 0.4);
 }
 
+TEST(SmoothRanges, CurvedSurfaceStaysInPlace) {
+    // A cylinder of radius 25: planes in windows of radius 6 lie 6^2 / (8 * 25) = 0.18 behind it.
+    const Surface cylinder = [](double u, double) {
+        const double c = kDistance + 25.0;
+        const double a = u * u + 1.0;
+        const double root = c * c - a * (c * c - 625.0);
+        return root > 0.0 ? (c - std::sqrt(root)) / a : kDistance + 100.0;
+    };
+    const PointCloud smooth =
+        smooth_ranges(seen(cylinder, 2.0), {.spacing = kSpacing, .max_radius = 3.0});
+    double sum = 0.0;
+    double count = 0.0;
+    for (const Vec3f& p : smooth.points) {
+        const double u = double{p.x()} / double{p.z()};
+        if (std::abs(u) > 0.01) continue;  // the foremost 5 to each side
+        sum += double{p.z()} - cylinder(u, 0.0);
+        count += 1.0;
+    }
+    EXPECT_GT(count, 1000.0);
+    EXPECT_NEAR(sum / count, 0.0, 0.07);
+}
+
 TEST(SmoothRanges, ExactDepthsComeBackUntouched) {
     const PointCloud exact = seen(sphere, 0.0);
     const PointCloud smooth = smooth_ranges(exact, {.spacing = kSpacing});

@@ -16,7 +16,7 @@ using namespace recognition_testing;
 struct Case {
     SimulatedScene scene = alone(kCorner, 3);
     Scan scan = prepare_scan(library(), scene.cloud, {});
-    Recognition recognition;
+    Recognition recognition{.judge = general_confidence()};
 
     RecognizedObject judged(const Pose& T_scene_model) const {
         Verified verified = verify(scan, probe(kCorner),
@@ -90,7 +90,7 @@ TEST(Explanation, OfWhatFloatsInFrontOfTheScanSaysThatItIsContradicted) {
     const Explanation& one = explained.front();
     EXPECT_TRUE(one.outcome == Outcome::doubtful || one.outcome == Outcome::too_small);
     EXPECT_GT(one.verified.violation, one.verified.support);
-    EXPECT_TRUE(says(one, "is contradicted (the sensor looked through it")) << one.verdict;
+    EXPECT_TRUE(says(one, "contradict it in one piece: the sensor looked through it")) << one.verdict;
     EXPECT_TRUE(says(one, "Not reported")) << one.verdict;
 }
 

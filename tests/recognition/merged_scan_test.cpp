@@ -76,5 +76,58 @@ TEST(MergedScan, AnObjectIsRecognizedWhereverTheSensorsWere) {
     EXPECT_LT(pose_error(kCorner, truth, answer.objects[0].T_scene_model), 0.02);
 }
 
+// What stands on a table, the table included, seen from two sides.
+PointCloud seen_from_two_sides(const std::vector<std::uint32_t>& chosen, SimulatedScene& first) {
+    TabletopSettings settings;
+    settings.spacing = 1.4;
+    settings.min_elevation = settings.max_elevation = 0.9;
+    std::vector<PlacedModel> placed;
+    first = simulate_tabletop(models(), chosen, 3, settings);
+    const Pose T_world_camera = first.T_camera_world.inverse();
+    for (const TrueObject& object : first.objects) {
+        placed.push_back({object.model, T_world_camera * object.T_scene_model});
+    }
+    SceneView other{.camera = first.camera, .T_camera_world = first.T_camera_world};
+    other.T_camera_world.rotate(Eigen::AngleAxisd(2.5, Vec3d::UnitZ()));
+    other.table_size = 8.0 * models().shapes[chosen[0]].diameter;
+    const SimulatedScene second = simulate_scene(models(), placed, other);
+    const Pose T_first_second = first.T_camera_world * other.T_camera_world.inverse();
+    PointCloud cloud = remove_invalid(first.cloud);
+    for (const Vec3f& point : remove_invalid(second.cloud).points) {
+        cloud.points.push_back((T_first_second * point.cast<double>()).cast<float>());
+    }
+    return cloud;
+}
+
+TEST(MergedScan, ATableIsFoundAndCutAway) {
+    SimulatedScene first;
+    const PointCloud cloud = seen_from_two_sides({kPlate, kCorner}, first);
+    const Scan scan = prepare_scan(library(), cloud, {.viewpoint_known = false});
+    ASSERT_TRUE(scan.table.has_value());
+    const Vec3d up = first.T_camera_world.linear() * Vec3d::UnitZ();
+    EXPECT_GT(scan.table->normal.dot(up), 0.999);
+    for (const Vec3f& point : scan.cloud.points) {
+        const Vec3d at = first.T_camera_world.inverse() * point.cast<double>();
+        EXPECT_GT(at.z(), 0.5 * scan.sampling);
+    }
+    const Recognition answer = recognize(library(), cloud, {.viewpoint_known = false});
+    EXPECT_TRUE(answer.table_found);
+    EXPECT_EQ(answer.objects.size(), 2U);
+    for (const RecognizedObject& object : answer.objects) {
+        const Pose& truth = first.objects[object.model_index == kPlate ? 0 : 1].T_scene_model;
+        EXPECT_LT(pose_error(object.model_index, truth, object.T_scene_model), 0.02);
+    }
+}
+
+TEST(MergedScan, NothingButATableIsNothing) {
+    PointCloud cloud;
+    for (int y = -100; y < 100; ++y) {
+        for (int x = -100; x < 100; ++x) cloud.points.emplace_back(2.0F * x, 2.0F * y, 0.0F);
+    }
+    const Recognition answer = recognize(library(), cloud, {.viewpoint_known = false});
+    EXPECT_TRUE(answer.table_found);
+    EXPECT_TRUE(answer.objects.empty());
+}
+
 }  // namespace
 }  // namespace ostraka

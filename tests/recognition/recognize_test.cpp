@@ -94,6 +94,23 @@ TEST(Recognize, NoiseOfAQuarterOfTheSamplingDistanceIsForgiven) {
     expect_all(recognize(library(), scene.cloud), scene);
 }
 
+TEST(Recognize, PixelsFartherApartThanTheLibrarysPointsAreEnough) {
+    TabletopSettings settings;
+    settings.spacing = 1.4;
+    settings.min_elevation = 0.7;
+    settings.distance = 3.0;
+    settings.camera = resized(settings.camera, 140);
+    const Recognizer recognizer(library());
+    const std::vector<std::uint32_t> chosen = {kPlate, kCorner};
+    for (std::uint64_t number = 0; number < 3; ++number) {
+        const SimulatedScene scene = simulate_tabletop(models(), chosen, number, settings);
+        const double pixel = scene.cloud.points.front().norm() / settings.camera.fx;
+        EXPECT_GT(pixel, 1.4 * library().settings.sampling);
+        // From above only flat faces are seen of the last: these slide.
+        expect_all(recognizer.recognize(scene.cloud, {.min_confidence = 0.5}), scene);
+    }
+}
+
 TEST(Recognize, TurningModelsAndSceneTurnsThePoses) {
     std::vector<ModelSource> turned = testing::simple_models();
     std::vector<Pose> T_new_old;

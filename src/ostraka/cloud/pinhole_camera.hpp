@@ -23,4 +23,8 @@ struct PinholeCamera {
     }
 };
 
+/// A camera with the same field of view and another number of pixels.
+/// @param width  pixels; 0: as it is.
+PinholeCamera resized(const PinholeCamera& camera, int width);
+
 }  // namespace ostraka

@@ -87,6 +87,11 @@ class RangeImage {
     void place_axis();
     void project();
     double pixel_pitch(const Vec2d& low, const Vec2d& high) const;
+    void fill_cells();
+    using CellPlanes = std::vector<std::optional<ImagePlane>>;
+    CellPlanes fit_planes(int radius, double noise) const;
+    /// The image of what the planes leave.
+    RangeImage without(const CellPlanes& planes) const;
     std::optional<ImagePlane> surface_at(int column, int row, int radius, double noise) const;
     double middle(int column, int row) const;
 
@@ -178,7 +183,6 @@ void RangeImage::project() {
     if (!((cells.x() + 1.0) * (cells.y() + 1.0) < double{kMaxCells})) return;
     width_ = static_cast<int>(cells.x()) + 1;
     height_ = static_cast<int>(cells.y()) + 1;
-    cells_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
     cell_of_.assign(cloud_.size(), kNoIndex);
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
         Vec3d& place = image_[i];
@@ -189,6 +193,17 @@ void RangeImage::project() {
         place = Vec3d(u, v, d);
         cell_of_[i] = static_cast<std::uint32_t>(v) * static_cast<std::uint32_t>(width_) +
                       static_cast<std::uint32_t>(u);
+    }
+    fill_cells();
+}
+
+void RangeImage::fill_cells() {
+    cells_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), {});
+    for (std::size_t i = 0; i < image_.size(); ++i) {
+        if (cell_of_[i] == kNoIndex) continue;
+        const double u = image_[i].x();
+        const double v = image_[i].y();
+        const double d = image_[i].z();
         cells_[cell_of_[i]].add({1.0, u, v, d, u * u, u * v, v * v, u * d, v * d, d * d});
     }
 }
@@ -248,8 +263,8 @@ std::optional<ImagePlane> RangeImage::surface_at(int column, int row, int radius
     return plane;
 }
 
-PointCloud RangeImage::smoothed(int radius, double noise) const {
-    std::vector<std::optional<ImagePlane>> planes(cells_.size());
+RangeImage::CellPlanes RangeImage::fit_planes(int radius, double noise) const {
+    CellPlanes planes(cells_.size());
     parallel_for(static_cast<std::size_t>(height_), [&](std::size_t row) {
         for (int column = 0; column < width_; ++column) {
             if (!(at(column, static_cast<int>(row)).n > 0.0)) continue;
@@ -257,6 +272,29 @@ PointCloud RangeImage::smoothed(int radius, double noise) const {
                 surface_at(column, static_cast<int>(row), radius, noise);
         }
     });
+    return planes;
+}
+
+RangeImage RangeImage::without(const CellPlanes& planes) const {
+    RangeImage rest = *this;
+    for (std::size_t i = 0; i < image_.size(); ++i) {
+        if (cell_of_[i] == kNoIndex) continue;
+        const auto& plane = planes[cell_of_[i]];
+        if (plane) {
+            rest.image_[i].z() -= plane->at(image_[i].x(), image_[i].y());
+        } else {
+            rest.cell_of_[i] = kNoIndex;
+        }
+    }
+    rest.fill_cells();
+    return rest;
+}
+
+PointCloud RangeImage::smoothed(int radius, double noise) const {
+    const CellPlanes planes = fit_planes(radius, noise);
+    // Twicing: planes in curved surface lie off it by the same in all the window; what they leave
+    // shows by how much.
+    const CellPlanes corrections = without(planes).fit_planes(radius, noise);
     PointCloud result = cloud_;
     result.normals.clear();
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
@@ -264,7 +302,10 @@ PointCloud RangeImage::smoothed(int radius, double noise) const {
         const auto& plane = planes[cell_of_[i]];
         if (!plane) continue;
         const double old_depth = depth_ / (image_[i].z() * spacing_ / depth_ + 1.0);
-        const double d = plane->at(image_[i].x(), image_[i].y());
+        double d = plane->at(image_[i].x(), image_[i].y());
+        if (const auto& correction = corrections[cell_of_[i]]) {
+            d += correction->at(image_[i].x(), image_[i].y());
+        }
         const double depth = depth_ / (d * spacing_ / depth_ + 1.0);
         if (!(std::abs(depth - old_depth) < 6.0 * noise * spacing_)) continue;
         const Vec3d ray = (cloud_.points[i] - cloud_.viewpoint).cast<double>() / old_depth;

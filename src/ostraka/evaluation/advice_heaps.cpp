@@ -133,13 +133,10 @@ int reliable_quarters(std::span<const Count> hidden) {
 }  // namespace
 
 TestSet heaps_at(const ModelLibrary& library, const AdviceSettings& settings, double distance) {
-    double diameter = 0.0;
-    for (const Model& model : library.models) diameter += model.shape.diameter;
-    diameter /= static_cast<double>(library.models.size());
     DropScenes recipe{.objects = settings.objects,
                       .min_elevation = 0.5,
                       .max_elevation = 1.3,
-                      .distance = distance / diameter,
+                      .distance = distance / mean_diameter(library),
                       .table_size = kTable,
                       .camera = settings.sensor.camera,
                       .sensor = settings.sensor.model,

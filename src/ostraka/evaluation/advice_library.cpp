@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
-
 #include "ostraka/base/error.hpp"
 #include "ostraka/base/stopwatch.hpp"
 #include "ostraka/evaluation/advice_steps.hpp"
@@ -78,9 +76,7 @@ std::size_t try_libraries(const std::vector<ModelLibrary>& libraries,
                           std::vector<SettingsTrial>& trials, const std::string& stage,
                           const Progress& progress) {
     const SceneModels models = scene_models_of(libraries.front());
-    std::vector<std::uint32_t> all(models.meshes.size());
-    std::iota(all.begin(), all.end(), 0U);
-    RandomViewSettings recipe{.distance = distance / mean_diameter(models, all),
+    RandomViewSettings recipe{.distance = distance / mean_diameter(models),
                               .camera = settings.sensor.camera,
                               .sensor = settings.sensor.model,
                               .seed = settings.seed};

@@ -15,31 +15,36 @@ namespace {
 using Vector = Eigen::Matrix<double, static_cast<int>(kFeatures), 1>;
 using Matrix = Eigen::Matrix<double, static_cast<int>(kFeatures), static_cast<int>(kFeatures)>;
 
-constexpr int kKinds = 3;                                    // of scenes, in turns
-constexpr std::array<double, 3> kNoises = {0.15, 0.3, 0.6};  // sampling distances, in turns
-constexpr int kObjects = 8;                                  // dropped in each heap
+constexpr std::size_t kKinds = 3;  // of scenes
+struct Quality {
+    double noise;  // sampling distances
+    int width;     // pixels of the sensor; 0: its own
+};
+constexpr std::array<Quality, 3> kQualities = {{{0.15, 0}, {0.3, 400}, {0.6, 0}}};
+constexpr std::size_t kConditions = kKinds * kQualities.size();
+constexpr int kObjects = 8;                // dropped in each heap
 constexpr double kLeastConfidence = 0.02;  // of examples: what is below never matters
 constexpr int kSteps = 100;                // of Newton's method, at most
 constexpr double kFarOff = 30.0;           // a logit that is as good as infinite
 
-double mean_diameter_of(const ModelLibrary& library) {
-    double sum = 0.0;
-    for (const Model& model : library.models) sum += model.shape.diameter;
-    return sum / static_cast<double>(library.models.size());
-}
-
-SceneRecipe recipe_of(const ModelLibrary& library, int kind, double noise, std::uint64_t seed) {
+SceneRecipe recipe_of(const ModelLibrary& library, std::size_t condition, std::uint64_t seed) {
+    const std::size_t kind = condition % kKinds;
+    const Quality& quality = kQualities[condition / kKinds];
     SensorModel sensor;
-    sensor.ranging.noise = noise * library.settings.sampling;
+    sensor.ranging.noise = quality.noise * library.settings.sampling;
     sensor.ranging.seed = seed;
-    if (kind == 0) return RandomViewSettings{.sensor = sensor, .seed = seed};
+    if (kind == 0) {
+        RandomViewSettings views{.sensor = sensor, .seed = seed};
+        views.camera = resized(views.camera, 2 * quality.width);
+        return views;
+    }
     DropScenes drop{.objects = kObjects, .sensor = sensor, .seed = seed};
+    drop.camera = resized(drop.camera, quality.width);
     if (kind == 1) {
         drop.drop.area = 0.8 * std::sqrt(static_cast<double>(kObjects));
         drop.choice = ModelChoice::random;
     } else {
-        const double d = mean_diameter_of(library);
-        drop.drop.bin = BinSettings{2.6 * d, 1.8 * d, 0.9 * d, 0.05 * d};
+        drop.drop.bin = usual_bin(mean_diameter(library));
         drop.min_elevation = 1.1;
         drop.max_elevation = 1.5;
     }
@@ -47,12 +52,12 @@ SceneRecipe recipe_of(const ModelLibrary& library, int kind, double noise, std::
 }
 
 // Half of the models, drawn anew for each scene; all in every other scene.
-std::vector<std::uint32_t> known_models(const ModelLibrary& library, int scene,
+std::vector<std::uint32_t> known_models(const ModelLibrary& library, std::size_t scene,
                                         std::uint64_t seed) {
     if (scene % 2 == 0 || library.models.size() < 2) return {};
     std::vector<std::uint32_t> known(library.models.size());
     for (std::uint32_t m = 0; m < known.size(); ++m) known[m] = m;
-    Random random(seed, static_cast<std::uint64_t>(scene));
+    Random random(seed, scene);
     for (std::uint32_t i = static_cast<std::uint32_t>(known.size()) - 1; i > 0; --i) {
         std::swap(known[i], known[random.below(i + 1)]);
     }
@@ -83,24 +88,25 @@ std::vector<Example> calibration_examples(const ModelLibrary& library,
     if (settings.scenes < 1) throw InvalidInput("at least one scene is needed");
     const Recognizer recognizer(library);
     const PoseJudge judge(library, false);
+    const auto scenes = static_cast<std::size_t>(settings.scenes);
     std::vector<Example> examples;
-    for (int scene = 0; scene < settings.scenes; ++scene) {
-        report(progress, "calibrate", static_cast<std::size_t>(scene),
-               static_cast<std::size_t>(settings.scenes));
-        const std::uint64_t seed = settings.seed * 1000003 + static_cast<std::uint64_t>(scene);
-        // Kinds, noises and what is known go in turns of different lengths.
-        const double noise = kNoises[static_cast<std::size_t>(scene / kKinds) % kNoises.size()];
-        const TestSet set =
-            simulated_set(library, recipe_of(library, scene % kKinds, noise, seed), 1);
-        SceneSettings scene_settings;
-        scene_settings.recognition.min_confidence = kLeastConfidence;
-        scene_settings.recognition.only = known_models(library, scene, seed);
-        const auto some =
-            examples_of(set.load(0), recognizer, judge, scene_settings, settings.max_adi);
-        examples.insert(examples.end(), some.begin(), some.end());
+    std::size_t done = 0;
+    for (std::size_t condition = 0; condition < std::min(scenes, kConditions); ++condition) {
+        // As many of each as of the others, or one less. A set prepares its models once.
+        const std::size_t count = (scenes - condition - 1) / kConditions + 1;
+        const std::uint64_t seed = settings.seed * 1000003 + condition;
+        const TestSet set = simulated_set(library, recipe_of(library, condition, seed), count);
+        for (std::size_t number = 0; number < count; ++number) {
+            report(progress, "calibrate", done++, scenes);
+            SceneSettings scene_settings;
+            scene_settings.recognition.min_confidence = kLeastConfidence;
+            scene_settings.recognition.only = known_models(library, condition + number, seed);
+            const auto some =
+                examples_of(set.load(number), recognizer, judge, scene_settings, settings.max_adi);
+            examples.insert(examples.end(), some.begin(), some.end());
+        }
     }
-    report(progress, "calibrate", static_cast<std::size_t>(settings.scenes),
-           static_cast<std::size_t>(settings.scenes));
+    report(progress, "calibrate", scenes, scenes);
     return examples;
 }
 

@@ -121,6 +121,12 @@ SceneModels scene_models_of(const ModelLibrary& library) {
     return scene_models(std::move(meshes), std::move(shapes));
 }
 
+double mean_diameter(const ModelLibrary& library) {
+    double sum = 0.0;
+    for (const Model& model : library.models) sum += model.shape.diameter;
+    return sum / static_cast<double>(library.models.size());
+}
+
 TestSet simulated_set(const ModelLibrary& library, const SceneRecipe& recipe, std::size_t count) {
     const auto simulator = std::make_shared<const SceneSimulator>(scene_models_of(library), recipe);
     TestSet set{.count = std::min(count, simulator->limit())};

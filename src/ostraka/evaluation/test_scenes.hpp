@@ -38,6 +38,9 @@ struct TestSet {
 /// @param count  scenes; fewer if the recipe has a limit.
 TestSet simulated_set(const ModelLibrary& library, const SceneRecipe& recipe, std::size_t count);
 
+/// Of all models. @param library  has at least one.
+double mean_diameter(const ModelLibrary& library);
+
 /// The same scenes for another library. Objects whose model it lacks (by name) stay in the scans
 /// but not in the truth: whatever is reported there is wrong.
 /// @param from  the library that the set's models are counted by. @param to  must outlive the set.

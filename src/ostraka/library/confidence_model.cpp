@@ -7,8 +7,8 @@ namespace ostraka {
 namespace {
 
 constexpr std::array<std::string_view, kFeatures> kNames = {
-    "constant", "agreement", "clearness", "misfit", "excess", "turned",
-    "visible",  "area",      "cells",     "grip",   "open",   "sunk"};
+    "constant", "agreement", "clearness", "misfit", "excess", "turned", "visible",
+    "area",     "cells",     "grip",      "open",   "sunk",   "solid"};
 
 }  // namespace
 
@@ -24,7 +24,7 @@ double ConfidenceModel::confidence(const Features& features) const {
 
 const ConfidenceModel& general_confidence() {
     static const ConfidenceModel model{
-        .weights = {-7.1, -0.6, 4.8, -1.3, -5.5, 2.5, 5.0, 0.1, 2.2, 4.85, -10.8, -20.0}};
+        .weights = {-5.6, -1.5, 3.6, -1.15, -6.6, 2.8, 5.1, 0.2, 2.4, 5.0, -12.2, -20.0, -1.9}};
     return model;
 }
 

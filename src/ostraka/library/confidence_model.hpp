@@ -22,6 +22,7 @@ enum class Feature : std::uint8_t {
     grip,       ///< how well what supports holds the model in place; 0: a plane
     open,       ///< share of the outline where the scan's surface goes on
     sunk,       ///< share that would be below the table
+    solid,      ///< logarithm of what contradicts in one piece, as cells of the range map
     count       // how many there are
 };
 inline constexpr std::size_t kFeatures = static_cast<std::size_t>(Feature::count);

@@ -28,6 +28,35 @@ PointCloud thinned(const PointCloud& scan, double spacing) {
     return remove_invalid(coarse);
 }
 
+// Normals of one plane must agree; any viewpoint that isn't on it will do.
+PointCloud seen_from_afar(const PointCloud& scan) {
+    PointCloud seen;
+    seen.points = scan.points;
+    Vec3f low = scan.points.front();
+    Vec3f high = low;
+    for (const Vec3f& point : scan.points) {
+        low = low.cwiseMin(point);
+        high = high.cwiseMax(point);
+    }
+    const Vec3f oblique = Vec3f(0.41F, 0.53F, 0.74F);  // hardly parallel to anybody's table
+    seen.viewpoint = (low + high) / 2.0F + 10.0F * (high - low).norm() * oblique;
+    return seen;
+}
+
+// Its normal toward where more of the scan lies.
+void turn_to_front(PlanePiece& piece, const PointCloud& coarse) {
+    std::ptrdiff_t balance = 0;
+    const double slack = piece.roughness + 1e-9;
+    for (const Vec3f& point : coarse.points) {
+        const double height = piece.normal.dot(point.cast<double>()) - piece.offset;
+        if (std::abs(height) > 3.0 * slack) balance += height > 0.0 ? 1 : -1;
+    }
+    if (balance >= 0) return;
+    piece.normal = -piece.normal;
+    piece.offset = -piece.offset;
+    piece.T_cloud_piece = piece.T_cloud_piece * Eigen::AngleAxisd(kPi, Vec3d::UnitX());
+}
+
 bool coplanar(const PlanePiece& a, const PlanePiece& b, double distance) {
     if (a.normal.dot(b.normal) < kParallel) return false;
     const auto off = [](const PlanePiece& plane, const PlanePiece& other) {
@@ -109,10 +138,12 @@ const FlatPiece* Backdrop::table(double extent) const {
     return best;
 }
 
-Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, double least) {
+Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, double least,
+                       bool merged) {
     Backdrop backdrop;
     backdrop.slack = std::max(sampling, kNoiseSlack * noise);
-    const PointCloud coarse = thinned(scan, kCoarse * sampling);
+    const PointCloud coarse = merged ? thinned(seen_from_afar(scan), kCoarse * sampling)
+                                     : thinned(scan, kCoarse * sampling);
     if (coarse.size() < 3) return backdrop;
     PatchSettings patches;
     patches.sampling = kCoarse * sampling;
@@ -120,7 +151,10 @@ Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, do
     // A plane of the thinned scan is as flat as its noise lets it be.
     planes.tolerance = std::max(0.25, backdrop.slack / patches.sampling);
     planes.min_points = 30;
-    const std::vector<PlanePiece> pieces = find_planes(coarse, patches, planes);
+    std::vector<PlanePiece> pieces = find_planes(coarse, patches, planes);
+    if (merged) {
+        for (PlanePiece& piece : pieces) turn_to_front(piece, coarse);
+    }
     for (const PlanePiece& piece : pieces) {
         FlatPiece flat = with_surface(piece, pieces, coarse, sampling);
         if (flat.extent >= least) backdrop.pieces.push_back(std::move(flat));

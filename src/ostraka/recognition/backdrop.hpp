@@ -32,10 +32,13 @@ struct Backdrop {
     const FlatPiece* table(double extent) const;
 };
 
-/// @param scan      finite points of any density; viewpoint set.
+/// @param scan      finite points of any density; viewpoint set, unless it is merged.
+/// @param merged    of several views, or nobody knows from where: then most of the scan lies in
+///                  front of a table.
 /// @param sampling  distance that details have; pieces are found at several times that.
 /// @param noise     deviation of its depth.
 /// @param least     extent of the smallest surface of interest.
-Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, double least);
+Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, double least,
+                       bool merged = false);
 
 }  // namespace ostraka

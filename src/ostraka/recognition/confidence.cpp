@@ -36,6 +36,7 @@ Features features_of(const Verified& v, const Scan& scan, double tolerance) {
     set(Feature::grip, std::sqrt(v.grip));
     set(Feature::open, v.open);
     set(Feature::sunk, v.sunk);
+    set(Feature::solid, std::log10(1.0 + static_cast<double>(v.solid)));
     return features;
 }
 

@@ -92,7 +92,6 @@ std::vector<Explanation> explain(const ModelLibrary& library, const Recognition&
     }
     if (scan.cloud.empty()) return all;
     const auto probes = probes_for(library, all);
-    const ConfidenceModel confidence = library.confidence.value_or(general_confidence());
     const double tolerance = settings.tolerance * scan.sampling;
     parallel_for(all.size(), [&](std::size_t i) {
         Explanation& one = all[i];
@@ -100,7 +99,7 @@ std::vector<Explanation> explain(const ModelLibrary& library, const Recognition&
                                     .T_scene_model = one.object.T_scene_model};
         one.verified = verify(scan, *probes[hypothesis.model], hypothesis, tolerance, &one.cells);
         one.outcome = outcome_of(one, settings.min_confidence);
-        one.reasons = reasons_of(one, confidence, wish.unit);
+        one.reasons = reasons_of(one, recognition.judge, wish.unit);
         one.verdict = verdict_of(one, recognition.objects, settings.min_confidence);
     });
     return all;

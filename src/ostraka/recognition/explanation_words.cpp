@@ -21,7 +21,6 @@ struct FeatureFacts {
 };
 constexpr std::array<FeatureFacts, 13> kFacts = {{{"constant", "", 1.0},
                                                   {"agreement", "agreement", 0.98},
-                                                  {"good_agreement", "agreement", 0.18},
                                                   {"clearness", "agreement", 0.87},
                                                   {"misfit", "fit", 0.12},
                                                   {"excess", "fit", 0.08},
@@ -31,7 +30,8 @@ constexpr std::array<FeatureFacts, 13> kFacts = {{{"constant", "", 1.0},
                                                   {"cells", "size", 1.2},
                                                   {"grip", "grip", 0.55},
                                                   {"open", "outline", 0.005},
-                                                  {"sunk", "sunk", 0.0}}};
+                                                  {"sunk", "sunk", 0.0},
+                                                  {"solid", "contradiction", 0.05}}};
 
 // Nothing of a feature that is not in the list.
 const FeatureFacts* facts_of(Feature feature) {
@@ -114,6 +114,7 @@ bool worse_than_usual(std::string_view topic, const Explanation& one) {
     if (topic == "grip") return lower(Feature::grip);
     if (topic == "outline") return higher(Feature::open);
     if (topic == "sunk") return higher(Feature::sunk);
+    if (topic == "contradiction") return higher(Feature::solid);
     return true;
 }
 
@@ -141,6 +142,13 @@ std::string words_for(std::string_view topic, const Explanation& one, bool again
     if (topic == "sunk") {
         return against ? fmt::format("{} of it would be below the table", percent(v.sunk))
                        : "nothing of it is below the table";
+    }
+    if (topic == "contradiction") {
+        return against ? fmt::format(
+                             "{} cells contradict it in one piece: the sensor looked through "
+                             "it there, or the surface faces elsewhere",
+                             v.solid)
+                       : "nothing contradicts it but at edges";
     }
     return fmt::format("its {} is {}", topic, against ? "unusual" : "as usual");
 }

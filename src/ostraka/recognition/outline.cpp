@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/recognition/outline.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ostraka {
@@ -92,6 +93,24 @@ double open_share(const Scan& scan, std::span<const std::uint32_t> window,
         }
     }
     return outline < kMinOutline ? 0.0 : static_cast<double>(open) / static_cast<double>(outline);
+}
+
+std::size_t solid_contradiction(const RangeMap& ranges, std::span<const std::uint32_t> window,
+                                std::span<const CellVerdict> verdicts) {
+    if (window.empty()) return 0;
+    const VerdictImage image(ranges, window, verdicts);
+    const auto contradicts = [&](int u, int v) {
+        const CellVerdict verdict = image.at(u, v);
+        return verdict == CellVerdict::violation || verdict == CellVerdict::backdrop;
+    };
+    return static_cast<std::size_t>(
+        std::count_if(window.begin(), window.end(), [&](std::uint32_t cell) {
+            for (int n = 0; n < 9; ++n) {
+                if (!contradicts(image.u(cell) + n % 3 - 1, image.v(cell) + n / 3 - 1))
+                    return false;
+            }
+            return true;
+        }));
 }
 
 }  // namespace ostraka

@@ -36,6 +36,7 @@ struct Recognition {
                                                ///< explains the same of the scan, as an index into
                                                ///< `objects`; of a reported one itself; kNoIndex
                                                ///< if there is none
+    ConfidenceModel judge;                     ///< that the confidences come from
     std::map<std::string, double> seconds;     ///< wall time of each stage
     std::size_t scan_points = 0;               ///< at the library's sampling distance
     bool table_found = false;

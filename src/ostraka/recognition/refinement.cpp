@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kCoarsePoints = 300;
 constexpr std::size_t kFinePoints = 2000;
-constexpr double kCoarseReach = 6.0;  // sampling distances
-constexpr double kFineReach = 2.5;    // sampling distances
-constexpr double kPlace = 0.25;       // diameters between centers that are at the same place
+constexpr double kCoarseReach = 10.0;  // sampling distances
+constexpr double kFineReach = 2.5;     // sampling distances
+constexpr double kPlace = 0.25;        // diameters between centers that are at the same place
 constexpr std::size_t kPerPlace = 5;
 constexpr double kEndReach = 1.0;           // sampling distances
 constexpr std::size_t kGlanceSamples = 96;  // of the model's surface, for a first look at a pose

@@ -70,7 +70,7 @@ constexpr double kMergedMargin = 4.0;  // sampling distances that the field reac
 
 // Planes fitted to curved surface move it: noise is only taken out where it would hide the shape,
 // and as little as will do. What is left averages out over a whole object.
-constexpr double kSmoothTarget = 0.35;  // deviation left in each point, in sampling distances
+constexpr double kSmoothTarget = 0.2;  // deviation left in each point, in sampling distances
 constexpr double kSmoothRadius = 1.0;   // of the window, in sampling distances
 constexpr double kNormalPitches = 1.8;  // radius of the planes that normals come from, in distances
                                         // of pixels, where these are far apart: the eight around
@@ -131,27 +131,52 @@ double roughness_of(const PointCloud& cloud, const RangeMap& ranges) {
     return double{*middle};
 }
 
-Scan prepare_merged(const PointCloud& valid, double sampling,
-                    const std::vector<Vec3f>& viewpoints) {
-    PointCloud cloud = resample(valid, sampling);
+std::vector<float> extents_at(const PointCloud& cloud, const Backdrop& backdrop) {
+    std::vector<float> extents(cloud.size());
+    parallel_for(
+        cloud.size(),
+        [&](std::size_t i) {
+            extents[i] = static_cast<float>(backdrop.extent_at(cloud.points[i]));
+        },
+        1024);
+    return extents;
+}
+
+std::optional<TablePlane> table_plane(const FlatPiece* table) {
+    if (table == nullptr) return std::nullopt;
+    return TablePlane{table->plane.normal, table->plane.offset};
+}
+
+Scan prepare_merged(const PointCloud& valid, double sampling, double model_diameter,
+                    const RecognitionSettings& settings) {
+    Backdrop backdrop;
+    if (settings.remove_plane) {
+        backdrop = find_backdrop(valid, sampling, 0.0, kSmallestExtent * model_diameter, true);
+    }
+    const double wall_extent = kWallExtent * model_diameter;
+    const FlatPiece* table = backdrop.table(wall_extent);
+    PointCloud cloud = resample(sort_points(valid, backdrop, table, wall_extent).objects, sampling);
     cloud.normals = estimate_normals_within(cloud, kNormalRadius * sampling);
     cloud = remove_invalid(cloud);
-    check_density(cloud, sampling);
+    if (backdrop.pieces.empty()) check_density(cloud, sampling);
     orient_normals(cloud);
     std::vector<RangeMap> views;
-    for (const Vec3f& viewpoint : viewpoints) {
+    for (const Vec3f& viewpoint : settings.viewpoints) {
         PointCloud seen = valid;
         seen.viewpoint = viewpoint;
         views.emplace_back(seen, std::span<const float>(), PointCloud(), sampling);
     }
-    SurfaceField field(cloud, kMergedCell * sampling, kMergedMargin * sampling);
-    std::vector<float> extents(cloud.size(), 0.0F);
+    std::optional<SurfaceField> field;
+    if (!cloud.empty()) field.emplace(cloud, kMergedCell * sampling, kMergedMargin * sampling);
+    std::vector<float> extents = extents_at(cloud, backdrop);
     return {.cloud = std::move(cloud),
             .plane_extents = std::move(extents),
             .ranges = RangeMap({}, {}, {}, sampling),
             .merged = std::move(field),
             .views = std::move(views),
-            .sampling = sampling};
+            .table = table_plane(table),
+            .sampling = sampling,
+            .cell = sampling};
 }
 
 }  // namespace
@@ -164,7 +189,7 @@ Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
     const PointCloud valid = remove_invalid(points);
     check_size(valid, raw.size(), model_diameter);
     if (!settings.viewpoint_known || !settings.viewpoints.empty()) {
-        return prepare_merged(valid, sampling, settings.viewpoints);
+        return prepare_merged(valid, sampling, model_diameter, settings);
     }
     Backdrop backdrop;
     const RangeNoise noise = measure_range_noise(valid, sampling);
@@ -177,19 +202,16 @@ Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
     const Sorted sorted = sort_points(valid, backdrop, table, wall_extent);
     PointCloud cloud = at_density(sorted.objects, sampling, noise.pitch);
     if (backdrop.pieces.empty()) check_density(cloud, sampling);
-    std::vector<float> extents(cloud.size());
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        extents[i] = static_cast<float>(backdrop.extent_at(cloud.points[i]));
-    }
+    std::vector<float> extents = extents_at(cloud, backdrop);
     const double cell = std::max(sampling, noise.pitch);
     RangeMap ranges(valid, sorted.wall_extents, cloud, cell);
     Scan scan{.cloud = std::move(cloud),
               .plane_extents = std::move(extents),
               .ranges = std::move(ranges),
+              .table = table_plane(table),
               .sampling = sampling,
               .cell = cell};
     scan.roughness = roughness_of(scan.cloud, scan.ranges);
-    if (table != nullptr) scan.table = TablePlane{table->plane.normal, table->plane.offset};
     return scan;
 }
 

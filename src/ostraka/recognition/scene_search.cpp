@@ -36,7 +36,7 @@ void mark_points(const Verified& object, const ModelProbe& probe, Scan& scan) {
 }
 
 // A library's own weights were learned from scans of one viewpoint.
-const ConfidenceModel& weights_for(const ModelLibrary& library, const Scan& scan) {
+const ConfidenceModel& judge_of(const ModelLibrary& library, const Scan& scan) {
     return library.confidence && !scan.merged ? *library.confidence : general_confidence();
 }
 
@@ -49,7 +49,7 @@ SceneSearch::SceneSearch(const EntryIndex& index, std::span<const ModelProbe> pr
       scan_(std::move(scan)),
       settings_(settings),
       since_start_(since_start),
-      confidence_(weights_for(index.library(), scan_)),
+      judge_(judge_of(index.library(), scan_)),
       proposed_(probes.size()) {}
 
 void SceneSearch::run() {
@@ -102,11 +102,10 @@ bool SceneSearch::play_round(int number) {
 std::vector<Hypothesis> SceneSearch::refined() {
     std::vector<std::vector<Hypothesis>> of_model(probes_.size());
     parallel_for(probes_.size(), [&](std::size_t m) {
-        const bool late =
-            settings_.time_limit > 0.0 && since_start_.seconds() > settings_.time_limit;
-        if (!late && asked_for(m))
+        if (!late() && asked_for(m))
             of_model[m] = refine_hypotheses(scan_, probes_[m], proposed_[m], settings_);
     });
+    expired();
     std::vector<Hypothesis> all;
     for (const auto& some : of_model) {
         for (const Hypothesis& finalist : some) {
@@ -132,8 +131,7 @@ void SceneSearch::verify_new(const std::vector<Hypothesis>& finalists, int round
         one.verified = verify(scan_, probes_[finalists[i].model], finalists[i], tolerance);
         one.features = features_of(one.verified, scan_, tolerance);
         one.round = round;
-        one.verified.confidence =
-            too_small(one.verified) ? 0.0 : confidence_.confidence(one.features);
+        one.verified.confidence = too_small(one.verified) ? 0.0 : judge_.confidence(one.features);
     });
     for (Judged& one : fresh) judged_.push_back(std::move(one));
 }
@@ -164,10 +162,12 @@ bool SceneSearch::asked_for(std::size_t model) const {
            std::find(settings_.only.begin(), settings_.only.end(), model) != settings_.only.end();
 }
 
+bool SceneSearch::late() const {
+    return settings_.time_limit > 0.0 && since_start_.seconds() > settings_.time_limit;
+}
+
 bool SceneSearch::expired() {
-    if (settings_.time_limit > 0.0 && since_start_.seconds() > settings_.time_limit) {
-        out_of_time_ = true;
-    }
+    out_of_time_ = out_of_time_ || late();
     return out_of_time_;
 }
 

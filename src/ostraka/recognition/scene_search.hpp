@@ -32,6 +32,8 @@ class SceneSearch {
     /// The best explanation of the scan: numbers of what was judged, most confident first.
     /// @param min_confidence  of each.
     std::vector<std::size_t> explanation(double min_confidence) const;
+    /// What confidence comes from.
+    const ConfidenceModel& judge() const { return judge_; }
     /// Wall time of each stage.
     const std::map<std::string, double>& seconds() const { return seconds_; }
     bool out_of_time() const { return out_of_time_; }
@@ -44,6 +46,7 @@ class SceneSearch {
     void verify_new(const std::vector<Hypothesis>& finalists, int round);
     std::size_t mark_explained();
     std::size_t unexplained() const;
+    bool late() const;
     bool expired();
     bool asked_for(std::size_t model) const;
 
@@ -52,7 +55,7 @@ class SceneSearch {
     Scan scan_;
     const RecognitionSettings& settings_;
     const Stopwatch& since_start_;
-    ConfidenceModel confidence_;
+    ConfidenceModel judge_;
     std::vector<std::vector<Hypothesis>> proposed_;  // per model
     std::vector<Judged> judged_;
     std::map<std::string, double> seconds_;

@@ -118,6 +118,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
     const double cell_area = scan.cell * scan.cell;
     result.area =
         static_cast<double>(result.support) * cell_area / (shape.diameter * shape.diameter);
+    result.solid = solid_contradiction(scan.ranges, window, verdicts);
     result.open = open_share(scan, window, verdicts);
     if (detail != nullptr) *detail = {window, std::move(verdicts)};
     return result;

@@ -20,6 +20,7 @@ struct Verified {
     std::size_t backdrop = 0;    ///< of these: the scan's surface is a plane larger than the model
     std::size_t missing = 0;     ///< of these: nothing was measured
     std::size_t unsure = 0;      ///< of these: nothing can be said
+    std::size_t solid = 0;       ///< of violation and backdrop: solid_contradiction()
     double sunk = 0.0;           ///< share of the silhouette that would be below the table
     double open = 0.0;           ///< open_share(): where the model ends, the scan's surface doesn't
     double inlier_rms = 0.0;     ///< of the distances of supporting cells, along the normal; scan's

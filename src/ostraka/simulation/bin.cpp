@@ -7,6 +7,10 @@
 
 namespace ostraka {
 
+BinSettings usual_bin(double diameter) {
+    return {2.6 * diameter, 1.8 * diameter, 0.9 * diameter, 0.05 * diameter};
+}
+
 void check(const BinSettings& bin) {
     for (const double measure : {bin.length, bin.width, bin.height, bin.wall}) {
         if (!(measure > 0.0) || !std::isfinite(measure)) {

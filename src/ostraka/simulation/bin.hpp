@@ -14,6 +14,9 @@ struct BinSettings {
     double wall = 0.0;    ///< thickness of walls and floor; above 0
 };
 
+/// A bin that holds a dozen objects. @param diameter  mean of the objects'.
+BinSettings usual_bin(double diameter);
+
 /// @throws InvalidInput if a measure is not above 0 and finite.
 void check(const BinSettings& bin);
 

@@ -36,9 +36,7 @@ SimulatedScene make_drop(const SceneModels& models, const DropModels& prepared,
     DropSettings settings = recipe.drop;
     settings.seed = recipe.seed;
     const DropResult heap = drop(prepared, chosen, number, settings);
-    std::vector<std::uint32_t> all(models.meshes.size());
-    std::iota(all.begin(), all.end(), 0U);
-    const double diameter = mean_diameter(models, all);
+    const double diameter = mean_diameter(models);
     Random random(recipe.seed ^ 0xca3e7a, number);
     const ViewFromAbove from{recipe.min_elevation, recipe.max_elevation,
                              recipe.distance * diameter};

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/base/random.hpp"
 
@@ -130,6 +128,12 @@ double mean_diameter(const SceneModels& models, std::span<const std::uint32_t> c
     return sum / static_cast<double>(chosen.size());
 }
 
+double mean_diameter(const SceneModels& models) {
+    double sum = 0.0;
+    for (const MeshShape& shape : models.shapes) sum += shape.diameter;
+    return sum / static_cast<double>(models.shapes.size());
+}
+
 Pose view_from_above(Random& random, const Vec3d& target, const ViewFromAbove& settings) {
     const double azimuth = random.uniform(0.0, 2.0 * kPi);
     const double elevation = random.uniform(settings.min_elevation, settings.max_elevation);
@@ -195,9 +199,7 @@ SimulatedScene simulate_tabletop(const SceneModels& models, std::span<const std:
 SimulatedScene simulate_random_view(const SceneModels& models, std::uint64_t number,
                                     const RandomViewSettings& settings) {
     Random random(settings.seed, number);
-    std::vector<std::uint32_t> all(models.meshes.size());
-    std::iota(all.begin(), all.end(), 0U);
-    const double diameter = mean_diameter(models, all);
+    const double diameter = mean_diameter(models);
     const auto choices =
         static_cast<std::uint32_t>(settings.max_objects - settings.min_objects + 1);
     const int count = settings.min_objects + static_cast<int>(random.below(choices));

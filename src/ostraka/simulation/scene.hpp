@@ -55,6 +55,8 @@ struct SceneView {
 
 /// Mean diameter of the chosen models. @param chosen  at least 1.
 double mean_diameter(const SceneModels& models, std::span<const std::uint32_t> chosen);
+/// Mean diameter of all models. There must be one.
+double mean_diameter(const SceneModels& models);
 
 /// A sensor above a table.
 struct ViewFromAbove {
