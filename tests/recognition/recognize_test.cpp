@@ -53,7 +53,8 @@ TEST(Recognize, FindsASingleObjectInFrontOfNothing) {
     const Recognizer recognizer(library());
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
         const SimulatedScene scene = alone(static_cast<std::uint32_t>(seed % 2), seed);
-        const Recognition result = recognizer.recognize(scene.cloud);
+        // Of the third only faces toward the sensor are seen, which would fit elsewhere, too.
+        const Recognition result = recognizer.recognize(scene.cloud, {.min_confidence = 0.7});
         EXPECT_FALSE(result.table_found);
         expect_all(result, scene);
     }

@@ -15,7 +15,7 @@ namespace ostraka {
 
 struct CalibrationSettings {
     int scenes = 24;       ///< at least 1
-    double prior = 1.0;    ///< how much the general weights count: larger, the less is learned
+    double prior = 8.0;    ///< how much the general weights count: larger, the less is learned
     double max_adi = 0.1;  ///< pose error of a right report, in model diameters
     std::uint64_t seed = 0;
 };
