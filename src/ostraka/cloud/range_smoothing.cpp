@@ -18,8 +18,9 @@ constexpr double kCellPitch = 1.5;   // side of a cell, in pitches: about two po
 constexpr double kMinForward = 0.2;  // cosine: points farther off the axis stay as they are
 constexpr std::size_t kMaxCells = 1U << 24U;
 constexpr std::size_t kNoiseSamples = 4000;
-constexpr int kMinSupport = 8;     // points that a plane is fitted to
-constexpr double kSteepest = 1.5;  // slope that a surface may have at first
+constexpr std::size_t kGrain = 4096;  // points that a thread takes at a time
+constexpr int kMinSupport = 8;        // points that a plane is fitted to
+constexpr double kSteepest = 1.5;     // slope that a surface may have at first
 constexpr int kRefits = 2;
 constexpr double kGate = 2.5;  // residuals beyond so many deviations are another surface
 
@@ -167,15 +168,21 @@ double RangeImage::pixel_pitch(const Vec2d& low, const Vec2d& high) const {
 void RangeImage::project() {
     const Vec3d nowhere = Vec3d::Constant(std::numeric_limits<double>::quiet_NaN());
     image_.assign(cloud_.size(), nowhere);
+    parallel_for(
+        cloud_.size(),
+        [&](std::size_t i) {
+            if (!cloud_.points[i].allFinite()) return;
+            const Vec3d p = R_image_cloud_ * (cloud_.points[i] - cloud_.viewpoint).cast<double>();
+            if (!(p.z() > kMinForward * p.norm())) return;
+            image_[i] = Vec3d(p.x() / p.z(), p.y() / p.z(), depth_ / p.z());
+        },
+        kGrain);
     Vec2d low = Vec2d::Constant(std::numeric_limits<double>::max());
     Vec2d high = -low;
-    for (std::size_t i = 0; i < cloud_.size(); ++i) {
-        if (!cloud_.points[i].allFinite()) continue;
-        const Vec3d p = R_image_cloud_ * (cloud_.points[i] - cloud_.viewpoint).cast<double>();
-        if (!(p.z() > kMinForward * p.norm())) continue;
-        image_[i] = Vec3d(p.x() / p.z(), p.y() / p.z(), depth_ / p.z());
-        low = low.cwiseMin(image_[i].head<2>());
-        high = high.cwiseMax(image_[i].head<2>());
+    for (const Vec3d& place : image_) {
+        if (!std::isfinite(place.x())) continue;
+        low = low.cwiseMin(place.head<2>());
+        high = high.cwiseMax(place.head<2>());
     }
     cell_ = kCellPitch * pixel_pitch(low, high);
     if (!(cell_ > 0.0)) return;
@@ -184,16 +191,19 @@ void RangeImage::project() {
     width_ = static_cast<int>(cells.x()) + 1;
     height_ = static_cast<int>(cells.y()) + 1;
     cell_of_.assign(cloud_.size(), kNoIndex);
-    for (std::size_t i = 0; i < cloud_.size(); ++i) {
-        Vec3d& place = image_[i];
-        if (!place.allFinite()) continue;
-        const double u = (place.x() - low.x()) / cell_;
-        const double v = (place.y() - low.y()) / cell_;
-        const double d = (place.z() - 1.0) * depth_ / spacing_;
-        place = Vec3d(u, v, d);
-        cell_of_[i] = static_cast<std::uint32_t>(v) * static_cast<std::uint32_t>(width_) +
-                      static_cast<std::uint32_t>(u);
-    }
+    parallel_for(
+        cloud_.size(),
+        [&](std::size_t i) {
+            Vec3d& place = image_[i];
+            if (!std::isfinite(place.x())) return;
+            const double u = (place.x() - low.x()) / cell_;
+            const double v = (place.y() - low.y()) / cell_;
+            const double d = (place.z() - 1.0) * depth_ / spacing_;
+            place = Vec3d(u, v, d);
+            cell_of_[i] = static_cast<std::uint32_t>(v) * static_cast<std::uint32_t>(width_) +
+                          static_cast<std::uint32_t>(u);
+        },
+        kGrain);
     fill_cells();
 }
 
@@ -277,15 +287,18 @@ RangeImage::CellPlanes RangeImage::fit_planes(int radius, double noise) const {
 
 RangeImage RangeImage::without(const CellPlanes& planes) const {
     RangeImage rest = *this;
-    for (std::size_t i = 0; i < image_.size(); ++i) {
-        if (cell_of_[i] == kNoIndex) continue;
-        const auto& plane = planes[cell_of_[i]];
-        if (plane) {
-            rest.image_[i].z() -= plane->at(image_[i].x(), image_[i].y());
-        } else {
-            rest.cell_of_[i] = kNoIndex;
-        }
-    }
+    parallel_for(
+        image_.size(),
+        [&](std::size_t i) {
+            if (cell_of_[i] == kNoIndex) return;
+            const auto& plane = planes[cell_of_[i]];
+            if (plane) {
+                rest.image_[i].z() -= plane->at(image_[i].x(), image_[i].y());
+            } else {
+                rest.cell_of_[i] = kNoIndex;
+            }
+        },
+        kGrain);
     rest.fill_cells();
     return rest;
 }
@@ -297,20 +310,23 @@ PointCloud RangeImage::smoothed(int radius, double noise) const {
     const CellPlanes corrections = without(planes).fit_planes(radius, noise);
     PointCloud result = cloud_;
     result.normals.clear();
-    for (std::size_t i = 0; i < cloud_.size(); ++i) {
-        if (cell_of_[i] == kNoIndex) continue;
-        const auto& plane = planes[cell_of_[i]];
-        if (!plane) continue;
-        const double old_depth = depth_ / (image_[i].z() * spacing_ / depth_ + 1.0);
-        double d = plane->at(image_[i].x(), image_[i].y());
-        if (const auto& correction = corrections[cell_of_[i]]) {
-            d += correction->at(image_[i].x(), image_[i].y());
-        }
-        const double depth = depth_ / (d * spacing_ / depth_ + 1.0);
-        if (!(std::abs(depth - old_depth) < 6.0 * noise * spacing_)) continue;
-        const Vec3d ray = (cloud_.points[i] - cloud_.viewpoint).cast<double>() / old_depth;
-        result.points[i] = (cloud_.viewpoint.cast<double>() + depth * ray).cast<float>();
-    }
+    parallel_for(
+        cloud_.size(),
+        [&](std::size_t i) {
+            if (cell_of_[i] == kNoIndex) return;
+            const auto& plane = planes[cell_of_[i]];
+            if (!plane) return;
+            const double old_depth = depth_ / (image_[i].z() * spacing_ / depth_ + 1.0);
+            double d = plane->at(image_[i].x(), image_[i].y());
+            if (const auto& correction = corrections[cell_of_[i]]) {
+                d += correction->at(image_[i].x(), image_[i].y());
+            }
+            const double depth = depth_ / (d * spacing_ / depth_ + 1.0);
+            if (!(std::abs(depth - old_depth) < 6.0 * noise * spacing_)) return;
+            const Vec3d ray = (cloud_.points[i] - cloud_.viewpoint).cast<double>() / old_depth;
+            result.points[i] = (cloud_.viewpoint.cast<double>() + depth * ray).cast<float>();
+        },
+        kGrain);
     return result;
 }
 

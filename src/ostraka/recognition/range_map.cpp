@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/base/parallel.hpp"
 
 namespace ostraka {
 namespace {
@@ -12,6 +14,12 @@ namespace {
 constexpr double kMaxCells = 4e6;  // beyond it cells are made larger
 constexpr int kGapFillPasses = 2;
 constexpr float kSteady = 0.9F;  // cosine between the normals of neighboring cells
+
+constexpr std::size_t kBlock = 4096;  // points that a thread takes at a time
+
+std::size_t blocks_of(std::size_t count) {
+    return (count + kBlock - 1) / kBlock;
+}
 
 Mat3f rotation_to(const Vec3d& forward) {
     return Mat3d(Eigen::Quaterniond::FromTwoVectors(forward, Eigen::Vector3d::UnitZ())
@@ -24,54 +32,96 @@ Mat3f rotation_to(const Vec3d& forward) {
 RangeMap::RangeMap(const PointCloud& raw, std::span<const float> wall_extents,
                    const PointCloud& resampled, double side)
     : viewpoint_(raw.viewpoint) {
-    std::vector<float> ranges;
-    Vec3d forward = Vec3d::Zero();
-    for (const Vec3f& point : raw.points) {
-        if (!point.allFinite()) continue;
-        const Vec3f offset = point - viewpoint_;
-        ranges.push_back(offset.norm());
-        if (ranges.back() > 0.0F) forward += (offset / ranges.back()).cast<double>();
+    const std::vector<float> ranges = place_axis(raw);
+    std::vector<float> sorted;
+    for (const float range : ranges) {
+        if (std::isfinite(range)) sorted.push_back(range);
     }
-    if (ranges.empty()) return;
-    if (!(forward.norm() > 0.0)) forward = Vec3d::UnitZ();
-    const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
-    std::nth_element(ranges.begin(), middle, ranges.end());
+    if (sorted.empty()) return;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
     if (!(*middle > 0.0F)) throw InvalidInput("the viewpoint lies on the scan");
-    R_map_scene_ = rotation_to(forward.normalized());
+    set_extent(raw, *middle, side);
+    fill(raw, ranges, wall_extents);
+    place_points(resampled);
+    fill_gaps();
+    look_around(resampled);
+}
 
-    // Extent of the projection, in units where the focal length is 1.
-    Vec2f low = Vec2f::Constant(1e9F);
-    Vec2f high = Vec2f::Constant(-1e9F);
-    for (const Vec3f& point : raw.points) {
-        if (!point.allFinite()) continue;
-        const Vec3f offset = R_map_scene_ * (point - viewpoint_);
-        const float depth = std::max(offset.norm() + offset.z(), 0.02F * offset.norm() + 1e-12F);
-        const Vec2f at = Vec2f(offset.x(), offset.y()) / depth;
-        low = low.cwiseMin(at);
-        high = high.cwiseMax(at);
+// Turns the map toward the scan. Returns the points' distances; NaN of invalid ones.
+std::vector<float> RangeMap::place_axis(const PointCloud& raw) {
+    std::vector<float> ranges(raw.size(), std::numeric_limits<float>::quiet_NaN());
+    std::vector<Vec3d> sums(blocks_of(raw.size()), Vec3d::Zero());
+    parallel_for(sums.size(), [&](std::size_t block) {
+        for (std::size_t i = block * kBlock; i < std::min(raw.size(), (block + 1) * kBlock); ++i) {
+            if (!raw.points[i].allFinite()) continue;
+            const Vec3f offset = raw.points[i] - viewpoint_;
+            ranges[i] = offset.norm();
+            if (ranges[i] > 0.0F) sums[block] += (offset / ranges[i]).cast<double>();
+        }
+    });
+    Vec3d forward = Vec3d::Zero();
+    for (const Vec3d& sum : sums) forward += sum;
+    R_map_scene_ = rotation_to(forward.norm() > 0.0 ? forward.normalized() : Vec3d::UnitZ());
+    return ranges;
+}
+
+void RangeMap::set_extent(const PointCloud& raw, float middle, double side) {
+    // Of the projection, in units where the focal length is 1.
+    struct Box {
+        Vec2f low = Vec2f::Constant(1e9F);
+        Vec2f high = Vec2f::Constant(-1e9F);
+    };
+    std::vector<Box> boxes(blocks_of(raw.size()));
+    parallel_for(boxes.size(), [&](std::size_t block) {
+        for (std::size_t i = block * kBlock; i < std::min(raw.size(), (block + 1) * kBlock); ++i) {
+            if (!raw.points[i].allFinite()) continue;
+            const Vec3f offset = R_map_scene_ * (raw.points[i] - viewpoint_);
+            const float depth =
+                std::max(offset.norm() + offset.z(), 0.02F * offset.norm() + 1e-12F);
+            const Vec2f at = Vec2f(offset.x(), offset.y()) / depth;
+            boxes[block].low = boxes[block].low.cwiseMin(at);
+            boxes[block].high = boxes[block].high.cwiseMax(at);
+        }
+    });
+    Box all;
+    for (const Box& box : boxes) {
+        all.low = all.low.cwiseMin(box.low);
+        all.high = all.high.cwiseMax(box.high);
     }
-    cells_per_radian_ = static_cast<float>(2.0 * double{*middle} / side);
-    const Vec2f extent = high - low;
+    cells_per_radian_ = static_cast<float>(2.0 * double{middle} / side);
+    const Vec2f extent = all.high - all.low;
     const double cells = double{extent.x()} * double{extent.y()} * double{cells_per_radian_} *
                          double{cells_per_radian_};
     if (cells > kMaxCells) cells_per_radian_ *= static_cast<float>(std::sqrt(kMaxCells / cells));
     constexpr float kBorder = 2.0F;
-    low_u_ = low.x() * cells_per_radian_ - kBorder;
-    low_v_ = low.y() * cells_per_radian_ - kBorder;
+    low_u_ = all.low.x() * cells_per_radian_ - kBorder;
+    low_v_ = all.low.y() * cells_per_radian_ - kBorder;
     width_ = static_cast<std::uint32_t>(extent.x() * cells_per_radian_ + 2.0F * kBorder) + 1;
     height_ = static_cast<std::uint32_t>(extent.y() * cells_per_radian_ + 2.0F * kBorder) + 1;
     cells_.resize(std::size_t{width_} * height_);
+}
 
+void RangeMap::fill(const PointCloud& raw, std::span<const float> ranges,
+                    std::span<const float> wall_extents) {
+    std::vector<std::uint32_t> places(raw.size(), kNoIndex);
+    parallel_for(
+        raw.size(),
+        [&](std::size_t i) {
+            if (std::isfinite(ranges[i])) places[i] = cell_of(raw.points[i]);
+        },
+        kBlock);
     for (std::size_t i = 0; i < raw.size(); ++i) {
-        if (!raw.points[i].allFinite()) continue;
-        const std::uint32_t index = cell_of(raw.points[i]);
-        if (index == kNoIndex) continue;
-        const float range = (raw.points[i] - viewpoint_).norm();
-        RangeCell& cell = cells_[index];
-        cell.near = cell.measured() ? std::min(cell.near, range) : range;
-        cell.far = std::max(cell.far, range);
+        if (places[i] == kNoIndex) continue;
+        RangeCell& cell = cells_[places[i]];
+        cell.near = cell.measured() ? std::min(cell.near, ranges[i]) : ranges[i];
+        cell.far = std::max(cell.far, ranges[i]);
         if (!wall_extents.empty()) cell.wall = std::max(cell.wall, wall_extents[i]);
     }
+}
+
+// Of several points in a cell it shows the nearest.
+void RangeMap::place_points(const PointCloud& resampled) {
     for (std::uint32_t i = 0; i < resampled.size(); ++i) {
         const std::uint32_t index = cell_of(resampled.points[i]);
         if (index == kNoIndex) continue;
@@ -81,16 +131,15 @@ RangeMap::RangeMap(const PointCloud& raw, std::span<const float> wall_extents,
             cell.point == kNoIndex || range < (resampled.points[cell.point] - viewpoint_).norm();
         if (closer) cell.point = i;
     }
-    fill_gaps();
-    look_around(resampled);
 }
 
 // What a cell shows may as well be seen a cell beside it, as rays and points don't coincide.
 void RangeMap::look_around(const PointCloud& resampled) {
     if (width_ < 3 || height_ < 3) return;
-    for (std::uint32_t v = 1; v + 1 < height_; ++v) {
+    parallel_for(height_ - 2, [&](std::size_t row) {
+        const auto v = static_cast<std::uint32_t>(row) + 1;
         for (std::uint32_t u = 1; u + 1 < width_; ++u) look_around(resampled, u, v);
-    }
+    });
 }
 
 void RangeMap::look_around(const PointCloud& resampled, std::uint32_t u, std::uint32_t v) {
@@ -110,34 +159,37 @@ void RangeMap::look_around(const PointCloud& resampled, std::uint32_t u, std::ui
 // Single empty cells between measured ones are sampling gaps, not free space; cells that no
 // resampled point fell into borrow one from beside them.
 void RangeMap::fill_gaps() {
+    if (width_ < 3 || height_ < 3) return;
     for (int pass = 0; pass < kGapFillPasses; ++pass) {
         std::vector<RangeCell> filled = cells_;
-        for (std::uint32_t v = 1; v + 1 < height_; ++v) {
-            for (std::uint32_t u = 1; u + 1 < width_; ++u) {
-                RangeCell& cell = filled[v * width_ + u];
-                if (cell.measured() && cell.point != kNoIndex) continue;
-                int measured = 0;
-                float near = 0.0F;
-                float far = 0.0F;
-                std::uint32_t point = kNoIndex;
-                for (std::uint32_t n = 0; n < 9; ++n) {
-                    const RangeCell& other = cells_[(v + n / 3 - 1) * width_ + u + n % 3 - 1];
-                    if (point == kNoIndex) point = other.point;
-                    if (!other.measured()) continue;
-                    ++measured;
-                    near = near > 0.0F ? std::min(near, other.near) : other.near;
-                    far = std::max(far, other.far);
-                }
-                if (!cell.measured() && measured >= 5) {
-                    cell.near = near;
-                    cell.far = far;
-                }
-                const bool may_borrow = cell.measured() && cell.wall == 0.0F;
-                if (may_borrow && cell.point == kNoIndex) cell.point = point;
-            }
-        }
+        parallel_for(height_ - 2, [&](std::size_t row) {
+            const auto v = static_cast<std::uint32_t>(row) + 1;
+            for (std::uint32_t u = 1; u + 1 < width_; ++u) fill_gap(u, v, filled[v * width_ + u]);
+        });
         cells_ = std::move(filled);
     }
+}
+
+void RangeMap::fill_gap(std::uint32_t u, std::uint32_t v, RangeCell& cell) const {
+    if (cell.measured() && (cell.point != kNoIndex || cell.wall > 0.0F)) return;
+    int measured = 0;
+    float near = 0.0F;
+    float far = 0.0F;
+    std::uint32_t point = kNoIndex;
+    for (std::uint32_t n = 0; n < 9; ++n) {
+        const RangeCell& other = cells_[(v + n / 3 - 1) * width_ + u + n % 3 - 1];
+        if (point == kNoIndex) point = other.point;
+        if (!other.measured()) continue;
+        ++measured;
+        near = near > 0.0F ? std::min(near, other.near) : other.near;
+        far = std::max(far, other.far);
+    }
+    if (!cell.measured() && measured >= 5) {
+        cell.near = near;
+        cell.far = far;
+    }
+    const bool may_borrow = cell.measured() && cell.wall == 0.0F;
+    if (may_borrow && cell.point == kNoIndex) cell.point = point;
 }
 
 Vec3d RangeMap::direction(std::uint32_t cell) const {

@@ -58,7 +58,13 @@ class RangeMap {
     std::uint32_t height() const { return height_; }
 
   private:
+    std::vector<float> place_axis(const PointCloud& raw);
+    void set_extent(const PointCloud& raw, float middle, double side);
+    void fill(const PointCloud& raw, std::span<const float> ranges,
+              std::span<const float> wall_extents);
+    void place_points(const PointCloud& resampled);
     void fill_gaps();
+    void fill_gap(std::uint32_t u, std::uint32_t v, RangeCell& cell) const;
     void look_around(const PointCloud& resampled);
     void look_around(const PointCloud& resampled, std::uint32_t u, std::uint32_t v);
 
