@@ -63,7 +63,7 @@ double value_of_set(const std::vector<Verified>& candidates, unsigned set) {
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         if ((set >> i & 1U) == 0U) continue;
         const Verified& a = candidates[i];
-        value -= std::log(1.0 - a.confidence) * std::sqrt(static_cast<double>(a.support));
+        value -= std::log(1.0 - a.confidence) * static_cast<double>(a.support);
         for (std::size_t j = 0; j < i; ++j) {
             if ((set >> j & 1U) == 0U) continue;
             const Verified& b = candidates[j];
@@ -100,6 +100,12 @@ TEST(Choose, ManySmallWrongOnesDontOutweighALargeRightOne) {
     std::vector<Verified> candidates = {candidate(0.999999, 0, 3000)};
     for (std::uint32_t i = 0; i < 4; ++i)
         candidates.push_back(candidate(0.9, 600 * i, 600 * i + 500));
+    EXPECT_EQ(chosen_of(candidates, 0.5), (std::vector<std::size_t>{0}));
+}
+
+TEST(Choose, TwoHalvesDontOutweighTheWholeForBeingTwo) {
+    const std::vector<Verified> candidates = {candidate(0.999, 0, 1000), candidate(0.995, 0, 450),
+                                              candidate(0.995, 500, 950)};
     EXPECT_EQ(chosen_of(candidates, 0.5), (std::vector<std::size_t>{0}));
 }
 

@@ -94,6 +94,7 @@ TEST(QuickScore, CountsSupportAgainstContradiction) {
 TEST(SourceName, NamesBoth) {
     EXPECT_EQ(source_name(HypothesisSource::segment), "segment");
     EXPECT_EQ(source_name(HypothesisSource::keypoints), "keypoints");
+    EXPECT_EQ(source_name(HypothesisSource::faces), "faces");
 }
 
 }  // namespace

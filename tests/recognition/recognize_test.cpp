@@ -34,7 +34,8 @@ void expect_all(const Recognition& recognition, const SimulatedScene& scene, dou
         EXPECT_GE(object->confidence, 0.5);
         EXPECT_LE(object->confidence, 1.0);
         EXPECT_NEAR(object->visible_fraction, truth.visible_fraction, rim);
-        EXPECT_TRUE(object->source == "segment" || object->source == "keypoints");
+        EXPECT_TRUE(object->source == "segment" || object->source == "keypoints" ||
+                    object->source == "faces");
     }
 }
 
@@ -73,17 +74,19 @@ TEST(Recognize, FindsTwoOfTheSameModel) {
     }
 }
 
-TEST(Recognize, EitherSourceAloneFindsPlainObjects) {
+TEST(Recognize, EachSourceAloneFindsPlainObjects) {
     const SimulatedScene scene = tabletop({kPlate, kCorner}, 1);
     const Recognizer recognizer(library());
-    RecognitionSettings settings;
-    settings.use_keypoints = false;
-    expect_all(recognizer.recognize(scene.cloud, settings), scene);
-    settings.use_keypoints = true;
-    settings.use_segments = false;
-    expect_all(recognizer.recognize(scene.cloud, settings), scene);
-    settings.use_keypoints = false;
-    EXPECT_TRUE(recognizer.recognize(scene.cloud, settings).objects.empty());
+    RecognitionSettings none;
+    none.use_keypoints = none.use_segments = none.use_faces = false;
+    EXPECT_TRUE(recognizer.recognize(scene.cloud, none).objects.empty());
+    for (bool RecognitionSettings::*source :
+         {&RecognitionSettings::use_keypoints, &RecognitionSettings::use_segments,
+          &RecognitionSettings::use_faces}) {
+        RecognitionSettings settings = none;
+        settings.*source = true;
+        expect_all(recognizer.recognize(scene.cloud, settings), scene);
+    }
 }
 
 TEST(Recognize, NoiseOfAQuarterOfTheSamplingDistanceIsForgiven) {

@@ -37,6 +37,24 @@ TEST(RefinePose, ReturnsToTheTruth) {
     }
 }
 
+TEST(RefinePose, MostlyReturnsFromFifteenDegreesAndATenthOfTheDiameter) {
+    for (const std::uint32_t model : {kCorner, kPlate}) {
+        const SimulatedScene scene = tabletop({model}, 1);
+        const Scan scan = prepared(scene);
+        const Pose& truth = scene.objects[0].T_scene_model;
+        const MeshShape& shape = models().shapes[model];
+        int returned = 0;
+        for (std::uint64_t seed = 0; seed < 40; ++seed) {
+            const Pose start =
+                disturbed(truth, shape.center, 15.0 * kPi / 180.0, 0.1 * shape.diameter, seed);
+            const Pose rough = refine_from_afar(scan, probe(model), start, scan.sampling);
+            const Pose end = refine_pose(scan, probe(model), rough, 2000, 2.5 * scan.sampling);
+            returned += pose_error(model, truth, end) < 0.025 ? 1 : 0;
+        }
+        EXPECT_GE(returned, 36) << "of 40 of model " << model;
+    }
+}
+
 TEST(RefinePose, StaysWhereNothingIsAround) {
     const SimulatedScene scene = alone(kCorner, 0);
     Pose far = scene.objects[0].T_scene_model;

@@ -40,6 +40,9 @@ inline constexpr float kMinAgreement = 0.7F;  ///< cosine between the normals of
 inline constexpr float kMinSlope = 0.3F;      ///< cosine below which tolerance along a ray grows no
                                               ///< further, and no return means nothing
 
+inline constexpr float kEdgeOn = 0.15F;  ///< cosine below which a face is hardly a cell wide: what
+                                         ///< its cell shows may as well be beside it
+
 inline constexpr float kTooLarge = 1.1F;  ///< model diameters that a flat surface of it can't have
 
 /// @param cell       of the scan's range map that shows the piece, or kNoIndex.
@@ -56,13 +59,14 @@ inline CellCheck check_cell(const Scan& scan, std::uint32_t cell, const SurfaceP
         return {clear ? CellVerdict::violation : CellVerdict::unsure};
     }
     if (piece.range > seen.far + slack) return {CellVerdict::hidden};
+    const bool edge_on = piece.slope < kEdgeOn;
     if (seen.point == kNoIndex) {
         const bool wall = seen.wall > kTooLarge * largest;
-        return {wall ? CellVerdict::backdrop : CellVerdict::unsure};
+        return {wall && !edge_on ? CellVerdict::backdrop : CellVerdict::unsure};
     }
     const float agreement = piece.normal.dot(scan.cloud.normals[seen.point]);
     if (agreement < kMinAgreement) {
-        return {seen.steady ? CellVerdict::violation : CellVerdict::unsure};
+        return {seen.steady && !edge_on ? CellVerdict::violation : CellVerdict::unsure};
     }
     const float off = piece.normal.dot(scan.cloud.points[seen.point] - piece.point);
     if (std::abs(off) > tolerance) return {CellVerdict::unsure};

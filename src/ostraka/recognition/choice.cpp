@@ -26,10 +26,11 @@ std::size_t shared_cells(const Verified& a, const Verified& b) {
     return shared;
 }
 
-// Grows with how sure the hypothesis is and with how much it explains.
+// Grows with how sure the hypothesis is, and in proportion to what it explains: a scan that one
+// object explains is not explained better by two that share it.
 double value_of(const Verified& v) {
     const double doubt = std::max(1.0 - v.confidence, 1e-9);
-    return -std::log(doubt) * std::sqrt(static_cast<double>(v.support));
+    return -std::log(doubt) * static_cast<double>(v.support);
 }
 
 // Finds the set of greatest value without conflicts in one group. Members are in descending value.

@@ -17,7 +17,7 @@ double shared_support(const Verified& a, const Verified& b);
 bool in_conflict(const Verified& a, const Verified& b);
 
 /// Of the hypotheses at or above `min_confidence` the set with the greatest sum of
-/// -log(1 - confidence) sqrt(support), no two of which explain more than a third of the same cells.
+/// -log(1 - confidence) support, no two of which explain more than a third of the same cells.
 /// Up to some hundred thousand steps are spent on finding it; what is best by then is returned.
 /// @return indices of the chosen ones, most confident first.
 std::vector<std::size_t> choose(std::span<const Verified* const> candidates, double min_confidence);

@@ -46,7 +46,15 @@ CellCheck check_free_cell(const Scan& scan, std::uint32_t cell, const SurfacePie
 }  // namespace
 
 std::string_view source_name(HypothesisSource source) {
-    return source == HypothesisSource::segment ? "segment" : "keypoints";
+    switch (source) {
+        case HypothesisSource::segment:
+            return "segment";
+        case HypothesisSource::keypoints:
+            return "keypoints";
+        case HypothesisSource::faces:
+            return "faces";
+    }
+    return "";
 }
 
 Evidence gather_evidence(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,

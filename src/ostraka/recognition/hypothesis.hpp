@@ -10,7 +10,7 @@
 namespace ostraka {
 
 /// Where a hypothesis came from.
-enum class HypothesisSource { segment, keypoints };
+enum class HypothesisSource { segment, keypoints, faces };
 std::string_view source_name(HypothesisSource source);
 
 struct Hypothesis {

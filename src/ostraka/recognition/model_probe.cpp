@@ -12,13 +12,23 @@ constexpr double kFieldCell = 1.5;     // sampling distances
 constexpr double kFieldMargin = 0.1;   // of the diameter: how far off a pose may be
 constexpr double kViewDistance = 3.0;  // diameters
 constexpr double kHitTolerance = 1.0;  // sampling distances
+constexpr double kFlatShare = 0.3;     // of the surface on faces, from which a part is flat or boxy
+
+std::vector<FlatFace> faces_of(const PointCloud& surface, double sampling) {
+    std::vector<FlatFace> faces = flat_faces(surface, sampling);
+    std::size_t points = 0;
+    for (const FlatFace& face : faces) points += face.points;
+    if (static_cast<double>(points) < kFlatShare * static_cast<double>(surface.size())) return {};
+    return faces;
+}
 
 }  // namespace
 
 ModelProbe::ModelProbe(const Model& model, double sampling)
     : model_(&model),
       field_(model.surface, kFieldCell * sampling, kFieldMargin * model.shape.diameter),
-      rays_({model.mesh}) {
+      rays_({model.mesh}),
+      faces_(faces_of(model.surface, sampling)) {
     for (const std::uint32_t i : farthest_points(model.surface.points, kProbeSamples)) {
         samples_.push_back(model.surface.points[i]);
         normals_.push_back(model.surface.normals[i]);

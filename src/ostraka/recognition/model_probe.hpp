@@ -6,6 +6,7 @@
 #include <bitset>
 
 #include "ostraka/library/model_library.hpp"
+#include "ostraka/recognition/face_matching.hpp"
 #include "ostraka/registration/surface_field.hpp"
 #include "ostraka/views/ray_scene.hpp"
 
@@ -26,6 +27,8 @@ class ModelProbe {
     /// Evenly spread points of the surface, model frame.
     const std::vector<Vec3f>& samples() const { return samples_; }
     const std::vector<Vec3f>& normals() const { return normals_; }
+    /// Its flat faces, if much of its surface is flat; else none. Model frame.
+    const std::vector<FlatFace>& faces() const { return faces_; }
     /// Which samples the model itself doesn't hide from a sensor at `viewpoint` (model frame).
     const std::bitset<kProbeSamples>& visible_from(const Vec3f& viewpoint) const;
 
@@ -35,6 +38,7 @@ class ModelProbe {
     RayScene rays_;
     std::vector<Vec3f> samples_;
     std::vector<Vec3f> normals_;
+    std::vector<FlatFace> faces_;
     std::vector<Vec3f> directions_;                    // kProbeViews, model frame
     std::vector<std::bitset<kProbeSamples>> visible_;  // one per direction
 };

@@ -16,6 +16,8 @@ constexpr double kCoarseReach = 10.0;  // sampling distances
 constexpr double kFineReach = 2.5;     // sampling distances
 constexpr double kPlace = 0.25;        // diameters between centers that are at the same place
 constexpr std::size_t kPerPlace = 5;
+constexpr double kStrict = 0.4;             // cosine between the normals of a pair, at least
+constexpr double kLenient = 0.0;            // the same, far from the truth
 constexpr double kEndReach = 1.0;           // sampling distances
 constexpr std::size_t kGlanceSamples = 96;  // of the model's surface, for a first look at a pose
 constexpr std::size_t kGlanceShare = 8;     // candidates looked at again, for each one refined
@@ -56,6 +58,36 @@ void thin_out(std::vector<Hypothesis>& hypotheses, std::size_t count, const Mesh
     hypotheses = std::move(kept);
 }
 
+// A part of the scan, thinned out evenly.
+struct Sample {
+    std::vector<Vec3f> points;
+    std::vector<Vec3f> normals;
+};
+
+Sample points_around(const Scan& scan, const Vec3f& center, double radius, std::size_t most) {
+    const auto limit = static_cast<float>(radius * radius);
+    std::vector<std::uint32_t> around;
+    for (std::uint32_t i = 0; i < scan.cloud.size(); ++i) {
+        if (!scan.explained.empty() && scan.explained[i]) continue;
+        if ((scan.cloud.points[i] - center).squaredNorm() < limit) around.push_back(i);
+    }
+    const std::size_t stride = 1 + around.size() / most;
+    Sample sample;
+    for (std::size_t i = 0; i < around.size(); i += stride) {
+        sample.points.push_back(scan.cloud.points[around[i]]);
+        sample.normals.push_back(scan.cloud.normals[around[i]]);
+    }
+    return sample;
+}
+
+Pose registered(const Sample& sample, const ModelProbe& probe, const Pose& T_scene_model,
+                double start, double end, double min_cosine) {
+    const IcpSettings settings{
+        .start_distance = start, .end_distance = end, .min_cosine = min_cosine};
+    return icp(probe.field(), sample.points, sample.normals, T_scene_model.inverse(), settings)
+        .T_target_source.inverse();
+}
+
 }  // namespace
 
 bool nearly_equal(const Pose& a, const Pose& b, const MeshShape& shape, double distance) {
@@ -70,22 +102,24 @@ Pose refine_pose(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_
                  std::size_t max_points, double reach) {
     const MeshShape& shape = probe.model().shape;
     const Vec3f center = Vec3d(T_scene_model * shape.center).cast<float>();
-    const auto radius = static_cast<float>(shape.radius + reach);
-    std::vector<std::uint32_t> around;
-    for (std::uint32_t i = 0; i < scan.cloud.size(); ++i) {
-        if (!scan.explained.empty() && scan.explained[i]) continue;
-        if ((scan.cloud.points[i] - center).squaredNorm() < radius * radius) around.push_back(i);
-    }
-    const std::size_t stride = 1 + around.size() / max_points;
-    std::vector<Vec3f> points;
-    std::vector<Vec3f> normals;
-    for (std::size_t i = 0; i < around.size(); i += stride) {
-        points.push_back(scan.cloud.points[around[i]]);
-        normals.push_back(scan.cloud.normals[around[i]]);
-    }
-    const IcpSettings settings{.start_distance = reach, .end_distance = kEndReach * scan.sampling};
-    return icp(probe.field(), points, normals, T_scene_model.inverse(), settings)
-        .T_target_source.inverse();
+    const Sample sample = points_around(scan, center, shape.radius + reach, max_points);
+    return registered(sample, probe, T_scene_model, reach, kEndReach * scan.sampling, kStrict);
+}
+
+Pose refine_from_afar(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
+                      double tolerance) {
+    const MeshShape& shape = probe.model().shape;
+    const Vec3f center = Vec3d(T_scene_model * shape.center).cast<float>();
+    const double reach = kCoarseReach * scan.sampling;
+    const double end = kEndReach * scan.sampling;
+    const Sample sample = points_around(scan, center, shape.radius + reach, kCoarsePoints);
+    const Pose T_strict = registered(sample, probe, T_scene_model, reach, end, kStrict);
+    Pose T_lenient = registered(sample, probe, T_scene_model, reach, 0.4 * reach, kLenient);
+    T_lenient = registered(sample, probe, T_lenient, 0.5 * reach, end, kStrict);
+    const auto score = [&](const Pose& T) {
+        return quick_score(gather_evidence(scan, probe, T, tolerance));
+    };
+    return score(T_lenient) > score(T_strict) ? T_lenient : T_strict;
 }
 
 std::vector<Hypothesis> refine_hypotheses(const Scan& scan, const ModelProbe& probe,
@@ -99,8 +133,8 @@ std::vector<Hypothesis> refine_hypotheses(const Scan& scan, const ModelProbe& pr
     score_all(scan, probe, hypotheses, 2.0 * tolerance);
     thin_out(hypotheses, candidates, shape, 3.0 * scan.sampling);
     parallel_for(hypotheses.size(), [&](std::size_t i) {
-        hypotheses[i].T_scene_model = refine_pose(scan, probe, hypotheses[i].T_scene_model,
-                                                  kCoarsePoints, kCoarseReach * scan.sampling);
+        hypotheses[i].T_scene_model =
+            refine_from_afar(scan, probe, hypotheses[i].T_scene_model, tolerance);
     });
     score_all(scan, probe, hypotheses, tolerance);
     thin_out(hypotheses, static_cast<std::size_t>(settings.finalists_per_model), shape,

@@ -70,7 +70,7 @@ constexpr double kMergedMargin = 4.0;  // sampling distances that the field reac
 
 // Planes fitted to curved surface move it: noise is only taken out where it would hide the shape,
 // and as little as will do. What is left averages out over a whole object.
-constexpr double kSmoothTarget = 0.2;  // deviation left in each point, in sampling distances
+constexpr double kSmoothTarget = 0.2;   // deviation left in each point, in sampling distances
 constexpr double kSmoothRadius = 1.0;   // of the window, in sampling distances
 constexpr double kNormalPitches = 1.8;  // radius of the planes that normals come from, in distances
                                         // of pixels, where these are far apart: the eight around

@@ -5,6 +5,7 @@
 
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/recognition/choice.hpp"
+#include "ostraka/recognition/face_matching.hpp"
 #include "ostraka/recognition/keypoint_matching.hpp"
 #include "ostraka/recognition/refinement.hpp"
 #include "ostraka/recognition/segment_matching.hpp"
@@ -16,7 +17,9 @@ constexpr int kMaxRounds = 8;
 constexpr double kAccept = 0.5;        // confidence from which an object explains its points
 constexpr std::size_t kMinLeft = 100;  // unexplained points that are worth another round
 constexpr double kOnSurface = 1.5;     // sampling distances from an object that explains a point
-constexpr double kTwin = 0.5;          // sampling distances between poses that are the same
+constexpr double kFaceSlack = 3.0;     // sampling distances that a face may seem to be longer
+constexpr std::size_t kMostByFaces = 4000;  // poses of each model
+constexpr double kTwin = 0.5;               // sampling distances between poses that are the same
 
 void mark_points(const Verified& object, const ModelProbe& probe, Scan& scan) {
     const Pose T_model_scene = object.hypothesis.T_scene_model.inverse(Eigen::Isometry);
@@ -54,6 +57,7 @@ SceneSearch::SceneSearch(const EntryIndex& index, std::span<const ModelProbe> pr
 
 void SceneSearch::run() {
     if (settings_.use_keypoints) propose_by_keypoints();
+    if (settings_.use_faces) propose_by_faces();
     bool found = play_round(0);
     if (settings_.use_segments) {
         propose_by_segments();
@@ -75,6 +79,24 @@ void SceneSearch::propose_by_keypoints() {
         }
     });
     seconds_["keypoints"] += watch.lap();
+}
+
+void SceneSearch::propose_by_faces() {
+    if (expired()) return;
+    const auto flat = [](const ModelProbe& probe) { return !probe.faces().empty(); };
+    if (std::none_of(probes_.begin(), probes_.end(), flat)) return;
+    Stopwatch watch;
+    const std::vector<FlatFace> faces = flat_faces(scan_.cloud, scan_.sampling);
+    parallel_for(probes_.size(), [&](std::size_t m) {
+        if (!asked_for(m)) return;
+        for (const Pose& pose : poses_from_faces(faces, probes_[m].faces(),
+                                                 kFaceSlack * scan_.sampling, kMostByFaces)) {
+            proposed_[m].push_back({.model = static_cast<std::uint32_t>(m),
+                                    .T_scene_model = pose,
+                                    .source = HypothesisSource::faces});
+        }
+    });
+    seconds_["faces"] += watch.lap();
 }
 
 void SceneSearch::propose_by_segments() {

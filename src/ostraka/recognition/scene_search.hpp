@@ -40,6 +40,7 @@ class SceneSearch {
 
   private:
     void propose_by_keypoints();
+    void propose_by_faces();
     void propose_by_segments();
     bool play_round(int number);
     std::vector<Hypothesis> refined();

@@ -24,6 +24,7 @@ struct RecognitionSettings {
     int finalists_per_model = 10;   ///< of those, poses that are refined finely and verified
     bool use_segments = true;       ///< source of hypotheses: segments and their global descriptors
     bool use_keypoints = true;      ///< source of hypotheses: local descriptors
+    bool use_faces = true;          ///< source of hypotheses: flat faces, of models that have them
     double time_limit = 0.0;  ///< seconds after which what is best by then is reported; then the
                               ///< result depends on the machine; 0: no limit
     std::vector<std::uint32_t> only;  ///< models of the library to look for; empty: all
