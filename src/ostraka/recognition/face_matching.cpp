@@ -170,11 +170,11 @@ std::vector<FlatFace> flat_faces(const PointCloud& cloud, double sampling) {
     PatchSettings patches;
     patches.sampling = sampling;
     std::vector<FlatFace> faces;
-    for (const PlanePiece& piece : find_planes(cloud, patches)) {
+    for (PlanePiece& piece : find_planes(cloud, patches)) {
         FlatFace face;
         face.center = piece.T_cloud_piece.translation();
         face.axes = piece.T_cloud_piece.linear();
-        face.points = piece.indices.size();
+        face.extent = piece.extents.x();
         Vec3f outward = Vec3f::Zero();
         for (const std::uint32_t i : piece.indices) outward += cloud.normals[i];
         if (outward.cast<double>().dot(face.normal()) < 0.0) face.axes.rightCols<2>() *= -1.0;
@@ -189,6 +189,7 @@ std::vector<FlatFace> flat_faces(const PointCloud& cloud, double sampling) {
                 });
             face.outline.push_back(cloud.points[*farthest].cast<double>());
         }
+        face.indices = std::move(piece.indices);
         faces.push_back(std::move(face));
     }
     return faces;
@@ -210,6 +211,7 @@ std::vector<Pose> poses_from_faces(std::span<const FlatFace> scene, std::span<co
                      [](const Guess& a, const Guess& b) { return a.filled > b.filled; });
     if (guesses.size() > most) guesses.resize(most);
     std::vector<Pose> poses;
+    poses.reserve(guesses.size());
     for (const Guess& guess : guesses) poses.push_back(guess.T_scene_model);
     return poses;
 }

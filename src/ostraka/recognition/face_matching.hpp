@@ -20,7 +20,8 @@ struct FlatFace {
     Mat3d axes = Mat3d::Identity();  ///< columns: along that rectangle's longer side, its shorter
                                      ///< one, and outward from the surface; right-handed
     std::vector<Vec3d> outline;      ///< corners of about its convex hull
-    std::size_t points = 0;
+    double extent = 0.0;             ///< longer side of the rectangle
+    std::vector<std::uint32_t> indices;  ///< points of the cloud on it
 
     Vec3d normal() const { return axes.col(2); }
 };

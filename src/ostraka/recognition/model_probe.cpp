@@ -17,7 +17,7 @@ constexpr double kFlatShare = 0.3;     // of the surface on faces, from which a 
 std::vector<FlatFace> faces_of(const PointCloud& surface, double sampling) {
     std::vector<FlatFace> faces = flat_faces(surface, sampling);
     std::size_t points = 0;
-    for (const FlatFace& face : faces) points += face.points;
+    for (const FlatFace& face : faces) points += face.indices.size();
     if (static_cast<double>(points) < kFlatShare * static_cast<double>(surface.size())) return {};
     return faces;
 }

@@ -87,6 +87,13 @@ void SceneSearch::propose_by_faces() {
     if (std::none_of(probes_.begin(), probes_.end(), flat)) return;
     Stopwatch watch;
     const std::vector<FlatFace> faces = flat_faces(scan_.cloud, scan_.sampling);
+    // Strips that are too narrow for the search for tables and walls: the rim of a bin is no plate.
+    for (const FlatFace& face : faces) {
+        for (const std::uint32_t i : face.indices) {
+            scan_.plane_extents[i] =
+                std::max(scan_.plane_extents[i], static_cast<float>(face.extent));
+        }
+    }
     parallel_for(probes_.size(), [&](std::size_t m) {
         if (!asked_for(m)) return;
         for (const Pose& pose : poses_from_faces(faces, probes_[m].faces(),
