@@ -114,6 +114,8 @@ Pose refine_from_afar(const Scan& scan, const ModelProbe& probe, const Pose& T_s
     const double end = kEndReach * scan.sampling;
     const Sample sample = points_around(scan, center, shape.radius + reach, kCoarsePoints);
     const Pose T_strict = registered(sample, probe, T_scene_model, reach, end, kStrict);
+    // Curved surfaces guide a pose back from as far without.
+    if (probe.faces().empty()) return T_strict;
     Pose T_lenient = registered(sample, probe, T_scene_model, reach, 0.4 * reach, kLenient);
     T_lenient = registered(sample, probe, T_lenient, 0.5 * reach, end, kStrict);
     const auto score = [&](const Pose& T) {

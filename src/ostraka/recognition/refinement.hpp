@@ -14,8 +14,9 @@ Pose refine_pose(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_
                  std::size_t max_points, double reach);
 
 /// As refine_pose(), for a guess that may be 15 degrees and a tenth of the diameter off. From there
-/// even the right partners face elsewhere, above all on boxes, but most wrong partners do, too: it
-/// goes both ways, with and without regard for that, and takes the one that fits the scan better.
+/// even the right partners on boxes face elsewhere, but most wrong partners do, too: for models
+/// with flat faces it goes both ways, with and without regard for that, and takes the one that fits
+/// the scan better.
 /// @param tolerance  of quick_score(), scan's unit.
 Pose refine_from_afar(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
                       double tolerance);
