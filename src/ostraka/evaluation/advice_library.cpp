@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+
 #include "ostraka/base/error.hpp"
 #include "ostraka/base/stopwatch.hpp"
 #include "ostraka/evaluation/advice_steps.hpp"

@@ -51,8 +51,7 @@ struct Guess {
 
 class FaceMatcher {
   public:
-    FaceMatcher(std::span<const FlatFace> scene, std::span<const FlatFace> model, double slack)
-        : scene_(scene), model_(model), slack_(slack) {}
+    FaceMatcher(std::span<const FlatFace> model, double slack) : model_(model), slack_(slack) {}
 
     void match_one(const FlatFace& seen, const FlatFace& face);
     void match_two(const FlatFace& seen, const FlatFace& seen2);
@@ -69,7 +68,6 @@ class FaceMatcher {
         guesses.push_back(guess);
     }
 
-    std::span<const FlatFace> scene_;
     std::span<const FlatFace> model_;
     double slack_;
 };
@@ -116,8 +114,9 @@ Mat3d frame_of(const FlatFace& a, const FlatFace& b) {
 // Planes fix the turn, and the place but along their common line; there, ends meet ends.
 void FaceMatcher::match_two(const FlatFace& seen, const FlatFace& seen2, const FlatFace& face,
                             const FlatFace& face2) {
-    const Mat3d R = frame_of(seen, seen2) * frame_of(face, face2).transpose();
-    const Vec3d line = frame_of(seen, seen2).col(2);
+    const Mat3d frame = frame_of(seen, seen2);
+    const Mat3d R = frame * frame_of(face, face2).transpose();
+    const Vec3d line = frame.col(2);
     Mat3d planes;
     planes.row(0) = seen.normal();
     planes.row(1) = seen2.normal();
@@ -197,7 +196,7 @@ std::vector<FlatFace> flat_faces(const PointCloud& cloud, double sampling) {
 
 std::vector<Pose> poses_from_faces(std::span<const FlatFace> scene, std::span<const FlatFace> model,
                                    double slack, std::size_t most) {
-    FaceMatcher matcher(scene, model, slack);
+    FaceMatcher matcher(model, slack);
     for (const FlatFace& seen : scene) {
         for (const FlatFace& face : model) matcher.match_one(seen, face);
         for (const FlatFace& seen2 : scene) {

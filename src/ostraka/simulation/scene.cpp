@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/base/random.hpp"
 
