@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "ostraka/evaluation/calibration.hpp"
 
@@ -10,8 +11,8 @@ namespace ostraka::app {
 
 struct CalibrationResult {
     ConfidenceModel confidence;
-    std::size_t examples = 0;
-    std::size_t right = 0;
+    std::vector<Example> examples;
+    std::size_t right() const;  ///< how many of them were
 };
 
 /// Learns from simulated scenes and stores the result in the file. Tells people.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "calibrate.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "evaluate_output.hpp"
 #include "ostraka/library/edit.hpp"
 #include "ostraka/library/library_file.hpp"
 
@@ -16,36 +18,57 @@ struct CalibrateOptions {
     CommonOptions common;
     std::string library;
     CalibrationSettings settings;
+    std::string examples;
 };
+
+// One line for each: its features and whether it was right.
+void write_examples(const std::vector<Example>& examples, const std::string& path) {
+    std::vector<std::vector<std::string>> rows(1);
+    for (std::size_t i = 0; i < kFeatures; ++i) {
+        rows[0].emplace_back(feature_name(static_cast<Feature>(i)));
+    }
+    rows[0].emplace_back("right");
+    for (const Example& example : examples) {
+        std::vector<std::string>& row = rows.emplace_back();
+        for (const double value : example.features) row.push_back(fmt::format("{:.6g}", value));
+        row.emplace_back(example.right ? "1" : "0");
+    }
+    write_csv(rows, path);
+}
 
 void run_calibrate(const CalibrateOptions& options) {
     catch_interrupts();
     const CalibrationResult result = calibrate_library(options.library, options.settings);
+    write_examples(result.examples, options.examples);
     Json weights = Json::object();
     for (std::size_t i = 0; i < kFeatures; ++i) {
         weights[std::string(feature_name(static_cast<Feature>(i)))] = result.confidence.weights[i];
     }
     write_json({{"library", options.library},
                 {"scenes", options.settings.scenes},
-                {"examples", result.examples},
-                {"right", result.right},
+                {"examples", result.examples.size()},
+                {"right", result.right()},
                 {"weights", weights}},
                options.common.json);
 }
 
 }  // namespace
 
+std::size_t CalibrationResult::right() const {
+    return static_cast<std::size_t>(std::count_if(examples.begin(), examples.end(),
+                                                  [](const Example& one) { return one.right; }));
+}
+
 CalibrationResult calibrate_library(const std::string& library,
                                     const CalibrationSettings& settings) {
     ModelLibrary models = load_library(library);
     models.confidence.reset();  // learned anew from the general weights
-    const std::vector<Example> examples = calibration_examples(models, settings, progress_bar());
-    CalibrationResult result{fit_confidence(examples, general_confidence(), settings.prior)};
-    result.examples = examples.size();
-    for (const Example& example : examples) result.right += example.right ? 1U : 0U;
+    CalibrationResult result;
+    result.examples = calibration_examples(models, settings, progress_bar());
+    result.confidence = fit_confidence(result.examples, general_confidence(), settings.prior);
     set_confidence(library, result.confidence);
     say(fmt::format("{}: confidence learned from {} reports, {} of them right, in {} scenes",
-                    library, result.examples, result.right, settings.scenes));
+                    library, result.examples.size(), result.right(), settings.scenes));
     return result;
 }
 
@@ -62,6 +85,9 @@ void add_calibrate(CLI::App& parent) {
         ->check(CLI::Range(1, 100000));
     command->add_option("--seed", options->settings.seed, "seed of the scenes")
         ->capture_default_str();
+    command->add_option("--examples", options->examples,
+                        "write what it learned from as CSV: the features of each report, and "
+                        "whether it was right");
     add_common(*command, options->common);
     command->callback([options] { run_calibrate(*options); });
 }

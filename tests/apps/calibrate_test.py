@@ -47,6 +47,18 @@ class Calibrate(unittest.TestCase):
     def dump(self, library):
         return succeed("export", library, "--dump", "-")
 
+    def test_examples_are_what_it_learned_from(self):
+        library = self.path("examples.ostraka")
+        succeed("build", *self.models, "-o", library, *COARSE)
+        path = self.path("examples.csv")
+        learned = json.loads(succeed("calibrate", library, "--scenes", 3, "--examples", path, "--json", "-"))
+        with open(path, encoding="ascii") as file:
+            header, *rows = [line.strip().split(",") for line in file]
+        self.assertEqual(header, [*learned["weights"], "right"])
+        self.assertEqual(len(rows), learned["examples"])
+        self.assertEqual(sum(int(row[-1]) for row in rows), learned["right"])
+        self.assertTrue(all(float(row[0]) == 1.0 for row in rows))
+
     def test_build_does_what_the_three_commands_do_whatever_the_threads(self):
         steps = self.path("steps.ostraka")
         succeed("build", *self.models, "-o", steps, *COARSE)

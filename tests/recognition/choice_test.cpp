@@ -57,6 +57,24 @@ TEST(Choose, LeavesOutWhatIsBelowTheThreshold) {
     EXPECT_TRUE(chosen_of({}, 0.5).empty());
 }
 
+TEST(Choose, OfPosesOfOneModelAtOnePlaceTheOneWhoseDepthsFitBest) {
+    Verified surer = candidate(0.91, 0, 100);
+    Verified finer = candidate(0.90, 2, 102);
+    surer.depth_fit = 90.0;
+    finer.depth_fit = 93.0;
+    EXPECT_EQ(chosen_of({surer, finer}, 0.5), (std::vector<std::size_t>{1}));
+    // Another model, another place, or one that explains much less: confidence decides.
+    Verified other_model = finer;
+    other_model.hypothesis.model = 7;
+    EXPECT_EQ(chosen_of({surer, other_model}, 0.5), (std::vector<std::size_t>{0}));
+    Verified beside = candidate(0.90, 50, 150);
+    beside.depth_fit = 93.0;
+    EXPECT_EQ(chosen_of({surer, beside}, 0.5), (std::vector<std::size_t>{0}));
+    Verified doubtful = finer;
+    doubtful.confidence = 0.6;
+    EXPECT_EQ(chosen_of({surer, doubtful}, 0.5), (std::vector<std::size_t>{0}));
+}
+
 // The value that choose() maximizes, of a set without conflicts; -1 of others.
 double value_of_set(const std::vector<Verified>& candidates, unsigned set) {
     double value = 0.0;

@@ -83,6 +83,30 @@ TEST(PrepareScan, ALargeFaceOfAModelIsNoTable) {
     EXPECT_GT(scan.cloud.size(), 500U);
 }
 
+// Its top is 1.4 sampling distances above the table: as far as a piece of table might seem to be.
+TEST(PrepareScan, AThinSheetOnATableIsNoPieceOfIt) {
+    TriangleMesh mesh;
+    testing::add_box(mesh, Vec3f(-300, -300, -20), Vec3f(300, 300, 0));
+    testing::add_box(mesh, Vec3f(-45, -25, 0), Vec3f(45, 25, 2.8F));
+    const SceneModels sheets = scene_models({mesh});
+    const PlacedModel placed{0, Pose::Identity()};
+    for (const double noise : {0.0, 0.4}) {
+        SceneView view{.T_camera_world = look_at(Vec3d(60, -250, 400), Vec3d::Zero())};
+        view.sensor.ranging.noise = noise;
+        const SimulatedScene scene = simulate_scene(sheets, {&placed, 1}, view);
+        const Scan scan = prepare_scan(scene.cloud, kSampling, kDiameter, {});
+        ASSERT_TRUE(scan.table) << noise;
+        const Pose T_world_scan = scene.objects[0].T_scene_model.inverse();
+        std::size_t on_sheet = 0;
+        for (const Vec3f& point : scan.cloud.points) {
+            const Vec3d at = T_world_scan * point.cast<double>();
+            on_sheet += std::abs(at.x()) < 45.0 && std::abs(at.y()) < 25.0 ? 1U : 0U;
+        }
+        const double all = 90.0 * 50.0 / (kSampling * kSampling);
+        EXPECT_GT(static_cast<double>(on_sheet), 0.8 * all) << noise;
+    }
+}
+
 TEST(PrepareScan, KeepsTheTableWhereAskedTo) {
     const SimulatedScene scene = tabletop({kCorner}, 0);
     const Scan scan = prepare_scan(scene.cloud, kSampling, kDiameter, {.remove_plane = false});

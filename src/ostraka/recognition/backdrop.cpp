@@ -13,10 +13,9 @@ namespace {
 constexpr double kCoarse = 4.0;  // sampling distances between points of the thinned scan
 constexpr std::size_t kMostPoints = 60'000;  // of the scan that are looked at
 constexpr double kParallel = 0.998;          // cosine between the normals of coplanar pieces
-constexpr double kCoplanar = 1.5;        // sampling distances of a piece's center from the other
-constexpr double kBehind = 3.0;          // sampling distances beyond a plane that are behind it
-constexpr double kMaxBehindShare = 0.1;  // of the scan's points, behind a wall
-constexpr double kNoiseSlack = 2.5;      // deviations of noise
+constexpr double kBehind = 3.0;              // sampling distances beyond a plane that are behind it
+constexpr double kMaxBehindShare = 0.1;      // of the scan's points, behind a wall
+constexpr double kNoiseSlack = 2.5;          // deviations of noise
 
 PointCloud thinned(const PointCloud& scan, double spacing) {
     PointCloud some;
@@ -93,7 +92,7 @@ double extent_of(const PlanePiece& a, const PlanePiece& b) {
 
 // Extent and share of the surface that a piece is part of.
 FlatPiece with_surface(const PlanePiece& piece, const std::vector<PlanePiece>& all,
-                       const PointCloud& coarse, double sampling) {
+                       const PointCloud& coarse, double sampling, double slack) {
     // The longer side: of a disk, too, no more than it is.
     FlatPiece flat{.plane = piece,
                    .T_piece_cloud = piece.T_cloud_piece.inverse(Eigen::Isometry),
@@ -103,7 +102,7 @@ FlatPiece with_surface(const PlanePiece& piece, const std::vector<PlanePiece>& a
     for (const PlanePiece& other : all) {
         if (&other == &piece) {
             points += other.indices.size();
-        } else if (flat.last && coplanar(piece, other, kCoplanar * sampling)) {
+        } else if (flat.last && coplanar(piece, other, slack)) {
             points += other.indices.size();
             flat.extent = std::max(flat.extent, extent_of(piece, other));
         }
@@ -156,7 +155,7 @@ Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, do
         for (PlanePiece& piece : pieces) turn_to_front(piece, coarse);
     }
     for (const PlanePiece& piece : pieces) {
-        FlatPiece flat = with_surface(piece, pieces, coarse, sampling);
+        FlatPiece flat = with_surface(piece, pieces, coarse, sampling, backdrop.slack);
         if (flat.extent >= least) backdrop.pieces.push_back(std::move(flat));
     }
     return backdrop;

@@ -8,6 +8,8 @@ namespace ostraka {
 namespace {
 
 constexpr double kMaxShared = 0.35;  // of the smaller support of two that may stand together
+constexpr double kSamePlace = 0.7;   // of the smaller support of two poses at the same place
+constexpr double kAsMuch = 0.9;      // of the explained value of another pose of the model
 constexpr int kMaxSteps = 200'000;   // of branch and bound, a group of conflicting hypotheses
 
 std::size_t shared_cells(const Verified& a, const Verified& b) {
@@ -24,13 +26,6 @@ std::size_t shared_cells(const Verified& a, const Verified& b) {
         }
     }
     return shared;
-}
-
-// Grows with how sure the hypothesis is, and in proportion to what it explains: a scan that one
-// object explains is not explained better by two that share it.
-double value_of(const Verified& v) {
-    const double doubt = std::max(1.0 - v.confidence, 1e-9);
-    return -std::log(doubt) * static_cast<double>(v.support);
 }
 
 // Finds the set of greatest value without conflicts in one group. Members are in descending value.
@@ -94,6 +89,10 @@ std::vector<std::vector<bool>> conflicts_of(std::span<const Verified* const> can
     return conflicts;
 }
 
+bool same_place(const Verified& a, const Verified& b) {
+    return a.hypothesis.model == b.hypothesis.model && shared_support(a, b) > kSamePlace;
+}
+
 // Items that conflict, directly or through others, are in one group. Ascending indices.
 std::vector<std::vector<std::size_t>> groups_of(const std::vector<std::vector<bool>>& conflicts) {
     std::vector<bool> seen(conflicts.size(), false);
@@ -132,6 +131,15 @@ std::vector<std::size_t> best_of_group(const std::vector<std::size_t>& group,
 
 }  // namespace
 
+double explained_value(const Verified& v) {
+    const double doubt = std::max(1.0 - v.confidence, 1e-9);
+    return -std::log(doubt) * static_cast<double>(v.support);
+}
+
+bool fits_better(const Verified& v, const Verified& other) {
+    return v.depth_fit > other.depth_fit && explained_value(v) > kAsMuch * explained_value(other);
+}
+
 double shared_support(const Verified& a, const Verified& b) {
     const std::size_t smaller = std::min(a.support, b.support);
     if (smaller == 0) return 0.0;
@@ -149,12 +157,22 @@ std::vector<std::size_t> choose(std::span<const Verified* const> candidates,
         const Verified& v = *candidates[i];
         if (v.confidence >= min_confidence && v.support > 0) able.push_back(i);
     }
+    const std::vector<std::size_t> all = able;
+    able.erase(std::remove_if(able.begin(), able.end(),
+                              [&](std::size_t i) {
+                                  return std::any_of(
+                                      all.begin(), all.end(), [&](std::size_t other) {
+                                          return same_place(*candidates[i], *candidates[other]) &&
+                                                 fits_better(*candidates[other], *candidates[i]);
+                                      });
+                              }),
+               able.end());
     std::stable_sort(able.begin(), able.end(), [&](std::size_t a, std::size_t b) {
-        return value_of(*candidates[a]) > value_of(*candidates[b]);
+        return explained_value(*candidates[a]) > explained_value(*candidates[b]);
     });
     const auto conflicts = conflicts_of(candidates, able);
     std::vector<double> values;
-    for (const std::size_t i : able) values.push_back(value_of(*candidates[i]));
+    for (const std::size_t i : able) values.push_back(explained_value(*candidates[i]));
     std::vector<std::size_t> chosen;
     for (const auto& group : groups_of(conflicts)) {
         for (const std::size_t i : best_of_group(group, values, conflicts)) {

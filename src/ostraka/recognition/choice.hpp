@@ -10,6 +10,15 @@
 
 namespace ostraka {
 
+/// What a hypothesis adds to an explanation: -log(1 - confidence) support. It grows with how sure
+/// the hypothesis is, and in proportion to what it explains: a scan that one object explains is not
+/// explained better by two that share it.
+double explained_value(const Verified& v);
+
+/// Of two poses of one model at the same place, whether `v` is the better one: it explains about as
+/// much, and its depths fit better.
+bool fits_better(const Verified& v, const Verified& other);
+
 /// How much of the smaller support both explain, 0 to 1.
 double shared_support(const Verified& a, const Verified& b);
 
@@ -17,7 +26,8 @@ double shared_support(const Verified& a, const Verified& b);
 bool in_conflict(const Verified& a, const Verified& b);
 
 /// Of the hypotheses at or above `min_confidence` the set with the greatest sum of
-/// -log(1 - confidence) support, no two of which explain more than a third of the same cells.
+/// explained_value(), no two of which explain more than a third of the same cells. Of
+/// poses of one model at the same place only those take part that none fits_better() than.
 /// Up to some hundred thousand steps are spent on finding it; what is best by then is returned.
 /// @return indices of the chosen ones, most confident first.
 std::vector<std::size_t> choose(std::span<const Verified* const> candidates, double min_confidence);

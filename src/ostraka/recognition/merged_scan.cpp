@@ -161,6 +161,7 @@ Verified verify_merged(const Scan& scan, const ModelProbe& probe, const Hypothes
     result.area = support * static_cast<double>(stride) * scan.sampling * scan.sampling /
                   (diameter * diameter);
     result.support = result.cells.size();
+    result.depth_fit = support;
     return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/cloud/farthest_points.hpp"
+#include "ostraka/recognition/near_symmetry.hpp"
 #include "ostraka/views/viewpoints.hpp"
 
 namespace ostraka {
@@ -33,6 +34,7 @@ ModelProbe::ModelProbe(const Model& model, double sampling)
         samples_.push_back(model.surface.points[i]);
         normals_.push_back(model.surface.normals[i]);
     }
+    turns_ = near_symmetries(field_, samples_, normals_, model.shape, model.symmetry, sampling);
     for (const Vec3d& direction : viewpoints(static_cast<int>(kProbeViews))) {
         directions_.push_back(direction.cast<float>());
     }

@@ -29,6 +29,8 @@ class ModelProbe {
     const std::vector<Vec3f>& normals() const { return normals_; }
     /// Its flat faces, if much of its surface is flat; else none. Model frame.
     const std::vector<FlatFace>& faces() const { return faces_; }
+    /// near_symmetries().
+    const std::vector<Pose>& turns() const { return turns_; }
     /// Which samples the model itself doesn't hide from a sensor at `viewpoint` (model frame).
     const std::bitset<kProbeSamples>& visible_from(const Vec3f& viewpoint) const;
 
@@ -39,6 +41,7 @@ class ModelProbe {
     std::vector<Vec3f> samples_;
     std::vector<Vec3f> normals_;
     std::vector<FlatFace> faces_;
+    std::vector<Pose> turns_;
     std::vector<Vec3f> directions_;                    // kProbeViews, model frame
     std::vector<std::bitset<kProbeSamples>> visible_;  // one per direction
 };

@@ -106,7 +106,7 @@ Recognition Recognizer::recognize(const PointCloud& scene,
     if (settings.keep_candidates) {
         add_candidates(search.judged(), reported, self.library, result);
     }
-    result.judge = search.judge();
+    result.judge = search.confidence_model();
     result.seconds = search.seconds();
     result.seconds["prepare"] = prepared;
     result.out_of_time = search.out_of_time();

@@ -58,13 +58,16 @@ void thin_out(std::vector<Hypothesis>& hypotheses, std::size_t count, const Mesh
     hypotheses = std::move(kept);
 }
 
-// A part of the scan, thinned out evenly.
+// The scan around a placed model, thinned out evenly.
 struct Sample {
     std::vector<Vec3f> points;
     std::vector<Vec3f> normals;
 };
 
-Sample points_around(const Scan& scan, const Vec3f& center, double radius, std::size_t most) {
+Sample points_around(const Scan& scan, const MeshShape& shape, const Pose& T_scene_model,
+                     double reach, std::size_t most) {
+    const Vec3f center = Vec3d(T_scene_model * shape.center).cast<float>();
+    const double radius = shape.radius + reach;
     const auto limit = static_cast<float>(radius * radius);
     std::vector<std::uint32_t> around;
     for (std::uint32_t i = 0; i < scan.cloud.size(); ++i) {
@@ -100,19 +103,21 @@ bool nearly_equal(const Pose& a, const Pose& b, const MeshShape& shape, double d
 
 Pose refine_pose(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
                  std::size_t max_points, double reach) {
-    const MeshShape& shape = probe.model().shape;
-    const Vec3f center = Vec3d(T_scene_model * shape.center).cast<float>();
-    const Sample sample = points_around(scan, center, shape.radius + reach, max_points);
+    const Sample sample =
+        points_around(scan, probe.model().shape, T_scene_model, reach, max_points);
     return registered(sample, probe, T_scene_model, reach, kEndReach * scan.sampling, kStrict);
+}
+
+Pose refine_finely(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model) {
+    return refine_pose(scan, probe, T_scene_model, kFinePoints, kFineReach * scan.sampling);
 }
 
 Pose refine_from_afar(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
                       double tolerance) {
-    const MeshShape& shape = probe.model().shape;
-    const Vec3f center = Vec3d(T_scene_model * shape.center).cast<float>();
     const double reach = kCoarseReach * scan.sampling;
     const double end = kEndReach * scan.sampling;
-    const Sample sample = points_around(scan, center, shape.radius + reach, kCoarsePoints);
+    const Sample sample =
+        points_around(scan, probe.model().shape, T_scene_model, reach, kCoarsePoints);
     const Pose T_strict = registered(sample, probe, T_scene_model, reach, end, kStrict);
     // Curved surfaces guide a pose back from as far without.
     if (probe.faces().empty()) return T_strict;
@@ -142,8 +147,7 @@ std::vector<Hypothesis> refine_hypotheses(const Scan& scan, const ModelProbe& pr
     thin_out(hypotheses, static_cast<std::size_t>(settings.finalists_per_model), shape,
              2.0 * scan.sampling);
     parallel_for(hypotheses.size(), [&](std::size_t i) {
-        hypotheses[i].T_scene_model = refine_pose(scan, probe, hypotheses[i].T_scene_model,
-                                                  kFinePoints, kFineReach * scan.sampling);
+        hypotheses[i].T_scene_model = refine_finely(scan, probe, hypotheses[i].T_scene_model);
     });
     score_all(scan, probe, hypotheses, tolerance);
     thin_out(hypotheses, hypotheses.size(), shape, scan.sampling);

@@ -13,6 +13,9 @@ namespace ostraka {
 Pose refine_pose(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
                  std::size_t max_points, double reach);
 
+/// As refine_pose(), for the last digits of a pose that is nearly right.
+Pose refine_finely(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model);
+
 /// As refine_pose(), for a guess that may be 15 degrees and a tenth of the diameter off. From there
 /// even the right partners on boxes face elsewhere, but most wrong partners do, too: for models
 /// with flat faces it goes both ways, with and without regard for that, and takes the one that fits

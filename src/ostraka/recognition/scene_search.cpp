@@ -19,6 +19,9 @@ constexpr std::size_t kMinLeft = 100;  // unexplained points that are worth anot
 constexpr double kOnSurface = 1.5;     // sampling distances from an object that explains a point
 constexpr double kFaceSlack = 3.0;     // sampling distances that a face may seem to be longer
 constexpr std::size_t kMostByFaces = 4000;  // poses of each model
+constexpr std::size_t kTurnPoints = 800;    // by which each turn is registered
+constexpr double kTurnReach = 2.5;          // sampling distances
+constexpr std::size_t kTurnsRefined = 3;    // of those that map a model nearly onto itself
 constexpr double kTwin = 0.5;               // sampling distances between poses that are the same
 
 void mark_points(const Verified& object, const ModelProbe& probe, Scan& scan) {
@@ -39,7 +42,7 @@ void mark_points(const Verified& object, const ModelProbe& probe, Scan& scan) {
 }
 
 // A library's own weights were learned from scans of one viewpoint.
-const ConfidenceModel& judge_of(const ModelLibrary& library, const Scan& scan) {
+const ConfidenceModel& model_of(const ModelLibrary& library, const Scan& scan) {
     return library.confidence && !scan.merged ? *library.confidence : general_confidence();
 }
 
@@ -52,7 +55,7 @@ SceneSearch::SceneSearch(const EntryIndex& index, std::span<const ModelProbe> pr
       scan_(std::move(scan)),
       settings_(settings),
       since_start_(since_start),
-      judge_(judge_of(index.library(), scan_)),
+      confidence_model_(model_of(index.library(), scan_)),
       proposed_(probes.size()) {}
 
 void SceneSearch::run() {
@@ -64,6 +67,7 @@ void SceneSearch::run() {
         found = play_round(1) || found;
     }
     for (int round = 2; round < kMaxRounds && found; ++round) found = play_round(round);
+    try_turns();
 }
 
 void SceneSearch::propose_by_keypoints() {
@@ -152,17 +156,60 @@ std::vector<Hypothesis> SceneSearch::refined() {
     return all;
 }
 
-void SceneSearch::verify_new(const std::vector<Hypothesis>& finalists, int round) {
+Judged SceneSearch::judge(const Hypothesis& hypothesis, int round) const {
     const double tolerance = settings_.tolerance * scan_.sampling;
+    Judged one;
+    one.verified = verify(scan_, probes_[hypothesis.model], hypothesis, tolerance);
+    one.features = features_of(one.verified, scan_, tolerance);
+    one.round = round;
+    one.verified.confidence =
+        too_small(one.verified) ? 0.0 : confidence_model_.confidence(one.features);
+    return one;
+}
+
+void SceneSearch::verify_new(const std::vector<Hypothesis>& finalists, int round) {
     std::vector<Judged> fresh(finalists.size());
-    parallel_for(finalists.size(), [&](std::size_t i) {
-        Judged& one = fresh[i];
-        one.verified = verify(scan_, probes_[finalists[i].model], finalists[i], tolerance);
-        one.features = features_of(one.verified, scan_, tolerance);
-        one.round = round;
-        one.verified.confidence = too_small(one.verified) ? 0.0 : judge_.confidence(one.features);
-    });
+    parallel_for(finalists.size(), [&](std::size_t i) { fresh[i] = judge(finalists[i], round); });
     for (Judged& one : fresh) judged_.push_back(std::move(one));
+}
+
+// What was found of models that are nearly symmetric may be a turn off. Which turn is right only
+// the measurements of all cells can tell: confidence hardly changes.
+void SceneSearch::try_turns() {
+    if (expired()) return;
+    Stopwatch watch;
+    scan_.explained.clear();
+    for (const std::size_t found : explanation(kAccept)) {
+        if (expired()) break;
+        const Judged best = best_turn(judged_[found]);
+        if (fits_better(best.verified, judged_[found].verified)) judged_[found] = best;
+    }
+    seconds_["turns"] += watch.lap();
+}
+
+// The best of what is turned, refined; or the given one.
+Judged SceneSearch::best_turn(const Judged& found) const {
+    const auto better = [](const Judged& a, const Judged& b) {
+        return a.verified.depth_fit > b.verified.depth_fit;
+    };
+    const Hypothesis& hypothesis = found.verified.hypothesis;
+    const ModelProbe& probe = probes_[hypothesis.model];
+    std::vector<Judged> turned(probe.turns().size());
+    parallel_for(turned.size(), [&](std::size_t i) {
+        Hypothesis one = hypothesis;
+        one.T_scene_model = refine_pose(scan_, probe, hypothesis.T_scene_model * probe.turns()[i],
+                                        kTurnPoints, kTurnReach * scan_.sampling);
+        turned[i] = judge(one, found.round);
+    });
+    std::stable_sort(turned.begin(), turned.end(), better);
+    turned.resize(std::min(turned.size(), kTurnsRefined));
+    parallel_for(turned.size(), [&](std::size_t i) {
+        Hypothesis one = turned[i].verified.hypothesis;
+        one.T_scene_model = refine_finely(scan_, probe, one.T_scene_model);
+        turned[i] = judge(one, found.round);
+    });
+    turned.push_back(found);
+    return *std::min_element(turned.begin(), turned.end(), better);
 }
 
 std::size_t SceneSearch::mark_explained() {

@@ -33,7 +33,7 @@ class SceneSearch {
     /// @param min_confidence  of each.
     std::vector<std::size_t> explanation(double min_confidence) const;
     /// What confidence comes from.
-    const ConfidenceModel& judge() const { return judge_; }
+    const ConfidenceModel& confidence_model() const { return confidence_model_; }
     /// Wall time of each stage.
     const std::map<std::string, double>& seconds() const { return seconds_; }
     bool out_of_time() const { return out_of_time_; }
@@ -44,6 +44,9 @@ class SceneSearch {
     void propose_by_segments();
     bool play_round(int number);
     std::vector<Hypothesis> refined();
+    Judged judge(const Hypothesis& hypothesis, int round) const;
+    void try_turns();
+    Judged best_turn(const Judged& found) const;
     void verify_new(const std::vector<Hypothesis>& finalists, int round);
     std::size_t mark_explained();
     std::size_t unexplained() const;
@@ -56,7 +59,7 @@ class SceneSearch {
     Scan scan_;
     const RecognitionSettings& settings_;
     const Stopwatch& since_start_;
-    ConfidenceModel judge_;
+    ConfidenceModel confidence_model_;
     std::vector<std::vector<Hypothesis>> proposed_;  // per model
     std::vector<Judged> judged_;
     std::map<std::string, double> seconds_;

@@ -21,6 +21,15 @@ Vec3d normal_at(const ModelProbe& probe, const RayHit& hit, const Vec3d& at) {
                                : Vec3d(probe.field().normal(nearest).cast<double>());
 }
 
+// How well a cell's own measurements agree with where the model is: 1 if they do, 0 from
+// `tolerance` on, -1 if the sensor saw through the model.
+double depth_fit(const RangeCell& cell, double range, double tolerance) {
+    if (!cell.measured()) return 0.0;
+    if (range > cell.far) return std::max(0.0, 1.0 - (range - cell.far) / tolerance);
+    if (range < cell.near) return std::max(-1.0, 1.0 - (cell.near - range) / tolerance);
+    return 1.0;
+}
+
 // Sums over the cells of a silhouette.
 struct Sums {
     double squares = 0.0;
@@ -111,6 +120,9 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
         const CellCheck check = check_cell(scan, window[i], piece, static_cast<float>(tolerance),
                                            static_cast<float>(shape.diameter));
         verdicts[i] = check.verdict;
+        if (check.verdict != CellVerdict::backdrop) {
+            result.depth_fit += depth_fit(scan.ranges[window[i]], range, tolerance);
+        }
         count(check, normal, result, sums);
         if (check.verdict == CellVerdict::support) result.cells.push_back(window[i]);
     }

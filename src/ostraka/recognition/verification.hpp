@@ -28,7 +28,9 @@ struct Verified {
     double turned = 0.0;         ///< mean of 1 - cosine between the normals of supporting cells
     double grip = 0.0;           ///< how well the support holds the model in place: smallest
                                  ///< eigenvalue of its normals' scatter, times 3; 0: a plane
-    double area = 0.0;           ///< of the support, across the line of sight, in diameters squared
+    double depth_fit = 0.0;  ///< sum over the silhouette of how well each cell's own depths agree:
+                             ///< finer than support, to tell apart poses that are nearly equal
+    double area = 0.0;       ///< of the support, across the line of sight, in diameters squared
     double visible_fraction = 0.0;     ///< support / silhouette
     double confidence = 0.0;           ///< 0 to 1
     std::vector<std::uint32_t> cells;  ///< the supporting cells, ascending
