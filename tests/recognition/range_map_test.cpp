@@ -136,6 +136,25 @@ TEST(RangeMap, SamplingGapsAreFilledAndHolesAreNot) {
     EXPECT_FALSE(with_hole[with_hole.cell_of(in_gap)].measured());
 }
 
+// A hole in the wall, 40 cells wide, and a post before the wall along the left border of it.
+TEST(RangeMap, ACellWithoutMeasurementKnowsWhatMayScreenIt) {
+    PointCloud cloud = wall(60.0, 0.5, {Vec2d(0.0, 0.0)}, 20.0);
+    for (double y = -36.0; y <= 36.0; y += 0.3) {
+        for (double x = -16.0; x <= -11.6; x += 0.3) {
+            cloud.points.push_back(Vec3d(x, y, 60.0).cast<float>());
+        }
+    }
+    const RangeMap map(cloud, {}, cloud, 1.0);
+    const auto at = [&](double x, double y) {
+        return map[map.cell_of(Vec3d(x, y, kDistance).cast<float>())];
+    };
+    ASSERT_FALSE(at(-15.0, 0.0).measured());
+    EXPECT_NEAR(at(-15.0, 0.0).screen, 61.0, 1.5);  // the post, not the wall beyond it
+    EXPECT_NEAR(at(15.0, 0.0).screen, 101.0, 1.5);  // the wall
+    EXPECT_EQ(at(0.0, 0.0).screen, 0.0F);           // too far from both
+    EXPECT_EQ(at(40.0, 0.0).screen, 0.0F);          // measured
+}
+
 TEST(RangeMap, InvalidPointsAreNoMeasurement) {
     PointCloud cloud = wall(20.0, 0.5);
     const std::size_t valid = cloud.size();

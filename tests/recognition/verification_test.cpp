@@ -122,6 +122,24 @@ TEST(Verify, AFaceLaidIntoAWallIsNotBelieved) {
     }
 }
 
+// Where nothing was measured beside something nearer, the model may be in its shadow.
+TEST(CheckCell, AMissingReturnInAShadowSaysNothing) {
+    PointCloud wall;
+    for (float y = -30.0F; y <= 30.0F; y += 0.5F) {
+        for (float x = -30.0F; x <= 30.0F; x += 0.5F) {
+            if (std::abs(x) > 5.0F || std::abs(y) > 5.0F) wall.points.emplace_back(x, y, 100.0F);
+        }
+    }
+    const Scan scan{.cloud = wall, .ranges = RangeMap(wall, {}, wall, 1.0)};
+    const auto verdict = [&](float range) {
+        const SurfacePiece piece{Vec3f(0, 0, range), -Vec3f::UnitZ(), range};
+        return check_cell(scan, scan.ranges.cell_of(piece.point), piece, 3.0F, 80.0F).verdict;
+    };
+    EXPECT_EQ(verdict(90.0F), CellVerdict::missing);
+    EXPECT_EQ(verdict(105.0F), CellVerdict::missing);
+    EXPECT_EQ(verdict(112.0F), CellVerdict::unsure);
+}
+
 TEST(SolidContradiction, CountsTheInsideOfPiecesButNoLines) {
     PointCloud wall;
     for (int y = -20; y <= 20; ++y) {

@@ -45,6 +45,7 @@ RangeMap::RangeMap(const PointCloud& raw, std::span<const float> wall_extents,
     fill(raw, ranges, wall_extents);
     place_points(resampled);
     fill_gaps();
+    find_screens();
     look_around(resampled);
 }
 
@@ -131,6 +132,32 @@ void RangeMap::place_points(const PointCloud& resampled) {
             cell.point == kNoIndex || range < (resampled.points[cell.point] - viewpoint_).norm();
         if (closer) cell.point = i;
     }
+}
+
+// Along a row or a column, there and back.
+void RangeMap::find_screens(std::uint32_t start, std::uint32_t step, std::uint32_t count) {
+    for (const bool back : {false, true}) {
+        float last = 0.0F;
+        int since = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            RangeCell& cell = cells_[start + step * (back ? count - 1 - i : i)];
+            if (cell.measured()) {
+                last = cell.near;
+                since = 0;
+            } else if (last > 0.0F && ++since <= kShadow) {
+                cell.screen = cell.screen > 0.0F ? std::min(cell.screen, last) : last;
+            }
+        }
+    }
+}
+
+void RangeMap::find_screens() {
+    parallel_for(height_, [&](std::size_t v) {
+        find_screens(static_cast<std::uint32_t>(v) * width_, 1, width_);
+    });
+    parallel_for(width_, [&](std::size_t u) {
+        find_screens(static_cast<std::uint32_t>(u), width_, height_);
+    });
 }
 
 // What a cell shows may as well be seen a cell beside it, as rays and points don't coincide.

@@ -11,14 +11,20 @@
 
 namespace ostraka {
 
+/// Cells as wide as which the shadow of something may be for the sensor's light or second camera.
+inline constexpr int kShadow = 12;
+
 /// One direction's measurement.
 struct RangeCell {
     float near = 0.0F;  ///< least distance from the viewpoint to a point; 0: nothing measured
     float far = 0.0F;   ///< greatest distance of such a point
     float nearest_around = 0.0F;  ///< least `near` of this and the eight cells around it; 0: none
     std::uint32_t point =
-        kNoIndex;         ///< a point of the resampled cloud in or beside this cell, or kNoIndex
-    float wall = 0.0F;    ///< extent of the wall or table that was seen here; 0: of none
+        kNoIndex;       ///< a point of the resampled cloud in or beside this cell, or kNoIndex
+    float wall = 0.0F;  ///< extent of the wall or table that was seen here; 0: of none
+    float screen =
+        0.0F;  ///< of a cell where nothing was measured: least `near` of the next measured
+               ///< ones in its row and column, up to kShadow cells away; 0: none
     bool steady = false;  ///< normals of this and the cells around it agree: they can be relied on
     bool measured() const { return near > 0.0F; }
 };
@@ -65,6 +71,8 @@ class RangeMap {
     void place_points(const PointCloud& resampled);
     void fill_gaps();
     void fill_gap(std::uint32_t u, std::uint32_t v, RangeCell& cell) const;
+    void find_screens();
+    void find_screens(std::uint32_t start, std::uint32_t step, std::uint32_t count);
     void look_around(const PointCloud& resampled);
     void look_around(const PointCloud& resampled, std::uint32_t u, std::uint32_t v);
 
