@@ -7,8 +7,6 @@
 
 Prints the weights; the typical values of right reports (explanation_words.cpp); and for each library what
 weights learned from the others do on it. Needs numpy.
-
-Usage: learn_confidence.py [--without FEATURE]... [--only FEATURE,...] CSV...
 """
 import argparse
 import csv
@@ -68,15 +66,15 @@ def main():
     names = sets[0][0]
     used = numpy.array([name not in options.without for name in names])
     data = [(features * used, right) for _, features, right in sets]
-    given = options.weights and numpy.array([float(w) for w in options.weights.split(",")])
+    given = numpy.array(options.weights.split(","), dtype=float) if options.weights else None
     for i, (features, right) in enumerate(data):
         others = [d for k, d in enumerate(data) if k != i] or data
-        weights = given if given is not None and len(given) else \
+        weights = given if given is not None else \
             fit(numpy.vstack([f for f, _ in others]), numpy.hstack([r for _, r in others]))
         show(options.csv[i], probability(weights, features), right)
     features = numpy.vstack([f for f, _ in data])
     right = numpy.hstack([r for _, r in data])
-    weights = given if given is not None and len(given) else fit(features, right)
+    weights = given if given is not None else fit(features, right)
     show("all", probability(weights, features), right)
     print("\nfeature      weight  typical of right reports")
     for k, name in enumerate(names):

@@ -12,10 +12,6 @@ import sys
 SIDES = 96  # of a circle; a multiple of 6, so that hexagons have true corners
 
 
-def round_bar(radius):
-    return lambda _: radius
-
-
 def with_sides(apothem, count, limit):
     """A prism of so many sides, its corners turned down to a radius."""
     def at(angle):
@@ -77,9 +73,8 @@ def radius_at(radius, angle):
 
 def turned(bore, outline):
     """Rings of points and the quads between them. All around and back through the bore."""
-    rings = list(outline)
     first, last = (outline[0][0], bore), (outline[-1][0], bore)
-    rings = [first] + rings + [last]
+    rings = [first] + outline + [last]
     if bore:
         rings.append(first)
     points = []

@@ -52,6 +52,15 @@ inline SimulatedScene alone(std::uint32_t model, std::uint64_t seed) {
     return simulate_scene(models(), {&placed, 1}, view);
 }
 
+/// A mesh as it is, seen from `eye`.
+inline SimulatedScene scan_of(const TriangleMesh& mesh, const Vec3d& eye, double noise) {
+    const SceneModels meshes = scene_models({mesh});
+    const PlacedModel placed{0, Pose::Identity()};
+    SceneView view{.T_camera_world = look_at(eye, Vec3d::Zero())};
+    view.sensor.ranging.noise = noise;
+    return simulate_scene(meshes, {&placed, 1}, view);
+}
+
 inline Scan prepared(const SimulatedScene& scene) {
     double diameter = 0.0;
     for (const Model& model : library().models) diameter = std::max(diameter, model.shape.diameter);

@@ -88,12 +88,8 @@ TEST(PrepareScan, AThinSheetOnATableIsNoPieceOfIt) {
     TriangleMesh mesh;
     testing::add_box(mesh, Vec3f(-300, -300, -20), Vec3f(300, 300, 0));
     testing::add_box(mesh, Vec3f(-45, -25, 0), Vec3f(45, 25, 2.8F));
-    const SceneModels sheets = scene_models({mesh});
-    const PlacedModel placed{0, Pose::Identity()};
     for (const double noise : {0.0, 0.4}) {
-        SceneView view{.T_camera_world = look_at(Vec3d(60, -250, 400), Vec3d::Zero())};
-        view.sensor.ranging.noise = noise;
-        const SimulatedScene scene = simulate_scene(sheets, {&placed, 1}, view);
+        const SimulatedScene scene = scan_of(mesh, Vec3d(60, -250, 400), noise);
         const Scan scan = prepare_scan(scene.cloud, kSampling, kDiameter, {});
         ASSERT_TRUE(scan.table) << noise;
         const Pose T_world_scan = scene.objects[0].T_scene_model.inverse();

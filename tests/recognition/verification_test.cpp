@@ -98,12 +98,8 @@ TEST(Verify, WhatIsHiddenIsNoContradiction) {
 TEST(Verify, AFaceLaidIntoAWallIsNotBelieved) {
     TriangleMesh mesh;
     testing::add_box(mesh, Vec3f(-300, -300, -20), Vec3f(300, 300, 0));
-    const SceneModels walls = scene_models({mesh});
-    const PlacedModel placed{0, Pose::Identity()};
     for (const double noise : {0.0, 0.5}) {
-        SceneView view{.T_camera_world = look_at(Vec3d(100, -150, 380), Vec3d::Zero())};
-        view.sensor.ranging.noise = noise;
-        const SimulatedScene scene = simulate_scene(walls, {&placed, 1}, view);
+        const SimulatedScene scene = scan_of(mesh, Vec3d(100, -150, 380), noise);
         const double sampling = library().settings.sampling;
         const Scan scan = prepare_scan(scene.cloud, sampling, 1000.0, {.remove_plane = false});
         ASSERT_FALSE(scan.table);

@@ -157,16 +157,13 @@ std::vector<std::size_t> choose(std::span<const Verified* const> candidates,
         const Verified& v = *candidates[i];
         if (v.confidence >= min_confidence && v.support > 0) able.push_back(i);
     }
-    const std::vector<std::size_t> all = able;
-    able.erase(std::remove_if(able.begin(), able.end(),
-                              [&](std::size_t i) {
-                                  return std::any_of(
-                                      all.begin(), all.end(), [&](std::size_t other) {
-                                          return same_place(*candidates[i], *candidates[other]) &&
-                                                 fits_better(*candidates[other], *candidates[i]);
-                                      });
-                              }),
-               able.end());
+    const auto outdone = [&, all = able](std::size_t i) {
+        const Verified& v = *candidates[i];
+        return std::any_of(all.begin(), all.end(), [&](std::size_t other) {
+            return fits_better(*candidates[other], v) && same_place(*candidates[other], v);
+        });
+    };
+    able.erase(std::remove_if(able.begin(), able.end(), outdone), able.end());
     std::stable_sort(able.begin(), able.end(), [&](std::size_t a, std::size_t b) {
         return explained_value(*candidates[a]) > explained_value(*candidates[b]);
     });

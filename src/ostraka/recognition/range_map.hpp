@@ -11,7 +11,8 @@
 
 namespace ostraka {
 
-/// Cells as wide as which the shadow of something may be for the sensor's light or second camera.
+/// How many cells wide the shadow may be that something casts for the sensor's light or its second
+/// camera.
 inline constexpr int kShadow = 12;
 
 /// One direction's measurement.

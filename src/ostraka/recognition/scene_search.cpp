@@ -181,13 +181,14 @@ void SceneSearch::try_turns() {
     scan_.explained.clear();
     for (const std::size_t found : explanation(kAccept)) {
         if (expired()) break;
+        if (probes_[judged_[found].verified.hypothesis.model].turns().empty()) continue;
         const Judged best = best_turn(judged_[found]);
         if (fits_better(best.verified, judged_[found].verified)) judged_[found] = best;
     }
     seconds_["turns"] += watch.lap();
 }
 
-// The best of what is turned, refined; or the given one.
+// The best of what is turned, refined. The model has turns.
 Judged SceneSearch::best_turn(const Judged& found) const {
     const auto better = [](const Judged& a, const Judged& b) {
         return a.verified.depth_fit > b.verified.depth_fit;
@@ -208,7 +209,6 @@ Judged SceneSearch::best_turn(const Judged& found) const {
         one.T_scene_model = refine_finely(scan_, probe, one.T_scene_model);
         turned[i] = judge(one, found.round);
     });
-    turned.push_back(found);
     return *std::min_element(turned.begin(), turned.end(), better);
 }
 
