@@ -142,6 +142,21 @@ TEST(SimulateTabletop, ObjectsTouchTheTableFromAbove) {
     }
 }
 
+TEST(SimulateRandomView, KeepsAllWithinTheSensorsRange) {
+    const SceneModels models = box_models();
+    RandomViewSettings settings;
+    settings.camera = resized(settings.camera, 64);
+    settings.sensor.min_depth = 5.0 * mean_diameter(models);  // where the middle would be
+    for (std::uint64_t number = 0; number < 10; ++number) {
+        const SimulatedScene scene = simulate_random_view(models, number, settings);
+        for (const TrueObject& object : scene.objects) {
+            const MeshShape& shape = models.shapes[object.model];
+            const double center = (object.T_scene_model * shape.center).z();
+            EXPECT_GT(center - shape.radius, settings.sensor.min_depth);
+        }
+    }
+}
+
 TEST(SimulateRandomView, HasAsManyObjectsAsAskedForApartAndNoTable) {
     const SceneModels models = box_models();
     bool fewest = false;

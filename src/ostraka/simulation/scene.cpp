@@ -11,6 +11,8 @@
 namespace ostraka {
 namespace {
 
+constexpr double kInRange = 1.05;  // of the sensor's smallest depth: the nearest that an object is
+
 TriangleMesh square(double side) {
     const auto half = static_cast<float>(side / 2.0);
     TriangleMesh mesh;
@@ -220,7 +222,9 @@ SimulatedScene simulate_random_view(const SceneModels& models, std::uint64_t num
         depth += 2.0 * shape.radius;
     }
     const Vec3d middle(0.0, 0.0, depth / 2.0);
-    const Vec3d eye = middle - Vec3d(0.0, 0.0, settings.distance * diameter);
+    const double distance =
+        std::max(settings.distance * diameter, depth / 2.0 + kInRange * settings.sensor.min_depth);
+    const Vec3d eye = middle - Vec3d(0.0, 0.0, distance);
     SceneView view{.camera = settings.camera,
                    .T_camera_world = look_at(eye, middle, Vec3d::UnitY()),
                    .sensor = settings.sensor};

@@ -91,7 +91,8 @@ struct RandomViewSettings {
     int min_objects = 3;
     int max_objects = 5;
     double spread = 0.35;   ///< how far objects lie beside the line of sight, in mean diameters
-    double distance = 5.0;  ///< from sensor to the middle, in mean diameters
+    double distance = 5.0;  ///< from sensor to the middle, in mean diameters; farther where the
+                            ///< nearest object would be nearer than the sensor can see
     PinholeCamera camera{1280, 960, 1600.0, 1600.0, 639.5, 479.5};
     SensorModel sensor;
     std::uint64_t seed = 0;  ///< scene number i uses (seed, i)
