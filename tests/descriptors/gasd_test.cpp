@@ -7,6 +7,7 @@
 
 #include "descriptors/shapes.hpp"
 #include "ostraka/base/error.hpp"
+#include "ostraka/cloud/principal_frame.hpp"
 
 namespace ostraka {
 namespace {
@@ -43,6 +44,16 @@ TEST(Gasd, FrameMovesWithTheCloud) {
     const Pose found = T_aligned_b.inverse() * T_aligned_a;
     EXPECT_LE((found.matrix() - T_b_a.matrix()).norm(), 1e-3);
     EXPECT_NEAR(T_aligned_a.linear().determinant(), 1.0, 1e-12);
+}
+
+// Which is why hypotheses from segments need no other frames for it.
+TEST(Gasd, FrameIsThePrincipalFrame) {
+    for (const PointCloud& cloud :
+         {shapes::bumpy_ellipsoid(2'000), shapes::cut_torus(1'000), shapes::cut_torus(3'000)}) {
+        const Pose principal = principal_frame(cloud).T_cloud_frame;
+        const Pose gasd = gasd_pose(gasd_frame(cloud)).inverse(Eigen::Isometry);
+        EXPECT_LE((principal.matrix() - gasd.matrix()).norm(), 1e-5);
+    }
 }
 
 TEST(Gasd, EveryPointCountsWhenAsked) {
