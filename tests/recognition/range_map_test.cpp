@@ -137,7 +137,9 @@ TEST(RangeMap, SamplingGapsAreFilledAndHolesAreNot) {
 }
 
 // A hole in the wall, 40 cells wide, and a post before the wall along the left border of it.
-TEST(RangeMap, ACellWithoutMeasurementKnowsWhatMayScreenIt) {
+// A sensor whose eyes are kParallax s apart, seen from what is at range s, doesn't see surface at
+// range r within kParallax (1 - s / r) radians of it.
+TEST(RangeMap, ACellWithoutMeasurementKnowsWhereAShadowBegins) {
     PointCloud cloud = wall(60.0, 0.5, {Vec2d(0.0, 0.0)}, 20.0);
     for (double y = -36.0; y <= 36.0; y += 0.3) {
         for (double x = -16.0; x <= -11.6; x += 0.3) {
@@ -149,10 +151,15 @@ TEST(RangeMap, ACellWithoutMeasurementKnowsWhatMayScreenIt) {
         return map[map.cell_of(Vec3d(x, y, kDistance).cast<float>())];
     };
     ASSERT_FALSE(at(-15.0, 0.0).measured());
-    EXPECT_NEAR(at(-15.0, 0.0).screen, 61.0, 1.5);  // the post, not the wall beyond it
-    EXPECT_NEAR(at(15.0, 0.0).screen, 101.0, 1.5);  // the wall
-    EXPECT_EQ(at(0.0, 0.0).screen, 0.0F);           // too far from both
-    EXPECT_EQ(at(40.0, 0.0).screen, 0.0F);          // measured
+    const auto begin = [](double range, double cells) {
+        return range / (1.0 - 0.01 * cells / kParallax);
+    };
+    // The post ends at -11.6 / 60 and the wall at 20 / 100: so many cells of 0.01 beside.
+    EXPECT_NEAR(at(-15.0, 0.0).shadow, begin(61.0, 4.5), 4.0);
+    EXPECT_NEAR(at(-10.0, 0.0).shadow, begin(61.0, 9.5), 5.0);
+    EXPECT_NEAR(at(15.0, 0.0).shadow, begin(102.0, 5.0), 7.0);
+    EXPECT_NEAR(at(4.0, 0.0).shadow, begin(102.0, 15.5), 25.0);
+    EXPECT_TRUE(std::isinf(at(40.0, 0.0).shadow));  // measured
 }
 
 TEST(RangeMap, InvalidPointsAreNoMeasurement) {

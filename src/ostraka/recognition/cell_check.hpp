@@ -38,27 +38,25 @@ struct CellCheck {
 
 inline constexpr float kMinAgreement = 0.7F;  ///< cosine between the normals of model and scan
 inline constexpr float kMinSlope = 0.3F;      ///< cosine below which tolerance along a ray grows no
-                                              ///< further, and no return means nothing
+                                              ///< further
+inline constexpr float kFading = 0.5F;        ///< cosine below which sensors begin to lose returns
+                                              ///< (docs/sensors.md): none means nothing
 
 inline constexpr float kEdgeOn = 0.15F;  ///< cosine below which a face is hardly a cell wide: what
                                          ///< its cell shows may as well be beside it
 
 inline constexpr float kTooLarge = 1.1F;  ///< model diameters that a flat surface of it can't have
 
-inline constexpr float kScreened = 0.1F;  ///< model diameters that something is nearer by, beside
-                                          ///< which a missing return may be due to its shadow
-
 /// @param cell       of the scan's range map that shows the piece, or kNoIndex.
 /// @param tolerance  along the normal, scan's unit. @param largest  diameter of the model.
 inline CellCheck check_cell(const Scan& scan, std::uint32_t cell, const SurfacePiece& piece,
                             float tolerance, float largest) {
-    const bool slanted = piece.slope < kMinSlope;
+    const bool slanted = piece.slope < kFading;
     const CellCheck nothing{slanted ? CellVerdict::unsure : CellVerdict::missing};
     if (cell == kNoIndex) return nothing;
     if (!scan.ranges[cell].measured()) {
-        const float screen = scan.ranges[cell].screen;
-        const bool shadow = screen > 0.0F && piece.range - screen > kScreened * largest;
-        return shadow ? CellCheck{CellVerdict::unsure} : nothing;
+        const bool in_shadow = piece.range > scan.ranges[cell].shadow;
+        return in_shadow ? CellCheck{CellVerdict::unsure} : nothing;
     }
     const RangeCell& seen = scan.ranges[cell];
     const float slack = tolerance / std::max(kMinSlope, piece.slope);

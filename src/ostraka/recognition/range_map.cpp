@@ -45,7 +45,7 @@ RangeMap::RangeMap(const PointCloud& raw, std::span<const float> wall_extents,
     fill(raw, ranges, wall_extents);
     place_points(resampled);
     fill_gaps();
-    find_screens();
+    find_shadows();
     look_around(resampled);
 }
 
@@ -134,8 +134,10 @@ void RangeMap::place_points(const PointCloud& resampled) {
     }
 }
 
-// Along a row or a column, there and back.
-void RangeMap::find_screens(std::uint32_t start, std::uint32_t step, std::uint32_t count) {
+// Along a row or a column, there and back. A sensor of baseline b doesn't see surface at range r
+// that is less than b (1 / s - 1 / r) radians beside something at range s; b is kParallax s.
+void RangeMap::find_shadows(std::uint32_t start, std::uint32_t step, std::uint32_t count) {
+    const double angle = 2.0 / double{cells_per_radian_};  // of a cell, in the map's middle
     for (const bool back : {false, true}) {
         float last = 0.0F;
         int since = 0;
@@ -144,19 +146,22 @@ void RangeMap::find_screens(std::uint32_t start, std::uint32_t step, std::uint32
             if (cell.measured()) {
                 last = cell.near;
                 since = 0;
-            } else if (last > 0.0F && ++since <= kShadow) {
-                cell.screen = cell.screen > 0.0F ? std::min(cell.screen, last) : last;
+                continue;
+            }
+            const double left = 1.0 - ++since * angle / kParallax;
+            if (last > 0.0F && left > 0.0) {
+                cell.shadow = std::min(cell.shadow, static_cast<float>(double{last} / left));
             }
         }
     }
 }
 
-void RangeMap::find_screens() {
+void RangeMap::find_shadows() {
     parallel_for(height_, [&](std::size_t v) {
-        find_screens(static_cast<std::uint32_t>(v) * width_, 1, width_);
+        find_shadows(static_cast<std::uint32_t>(v) * width_, 1, width_);
     });
     parallel_for(width_, [&](std::size_t u) {
-        find_screens(static_cast<std::uint32_t>(u), width_, height_);
+        find_shadows(static_cast<std::uint32_t>(u), width_, height_);
     });
 }
 

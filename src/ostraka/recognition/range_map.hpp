@@ -4,6 +4,7 @@
 // sphere.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,9 +12,9 @@
 
 namespace ostraka {
 
-/// How many cells wide the shadow may be that something casts for the sensor's light or its second
-/// camera.
-inline constexpr int kShadow = 12;
+/// Tangent of the angle between a sensor's camera and its light or second camera, as seen from what
+/// is nearest: few have more (docs/sensors.md).
+inline constexpr double kParallax = 0.25;
 
 /// One direction's measurement.
 struct RangeCell {
@@ -23,9 +24,9 @@ struct RangeCell {
     std::uint32_t point =
         kNoIndex;       ///< a point of the resampled cloud in or beside this cell, or kNoIndex
     float wall = 0.0F;  ///< extent of the wall or table that was seen here; 0: of none
-    float screen =
-        0.0F;  ///< of a cell where nothing was measured: least `near` of the next measured
-               ///< ones in its row and column, up to kShadow cells away; 0: none
+    float shadow = std::numeric_limits<float>::infinity();
+    ///< of a cell where nothing was measured: distance from which on surface may be in the shadow
+    ///< that something nearer, in its row or column, casts for the sensor's light or second camera
     bool steady = false;  ///< normals of this and the cells around it agree: they can be relied on
     bool measured() const { return near > 0.0F; }
 };
@@ -72,8 +73,8 @@ class RangeMap {
     void place_points(const PointCloud& resampled);
     void fill_gaps();
     void fill_gap(std::uint32_t u, std::uint32_t v, RangeCell& cell) const;
-    void find_screens();
-    void find_screens(std::uint32_t start, std::uint32_t step, std::uint32_t count);
+    void find_shadows();
+    void find_shadows(std::uint32_t start, std::uint32_t step, std::uint32_t count);
     void look_around(const PointCloud& resampled);
     void look_around(const PointCloud& resampled, std::uint32_t u, std::uint32_t v);
 
