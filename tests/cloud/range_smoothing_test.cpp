@@ -81,6 +81,21 @@ TEST(SmoothRanges, LeavesTheTargetedNoise) {
     }
 }
 
+TEST(RemainingDeviation, IsAboutWhatSmoothingLeaves) {
+    for (const double noise : {0.3, 1.0, 3.0, 6.0}) {
+        for (const double target : {0.06, 0.12, 0.3}) {
+            const RangeSmoothingSettings settings{.spacing = kSpacing, .target = target};
+            const PointCloud noisy = seen(slanted, noise);
+            const double left = remaining_deviation(measure_range_noise(noisy, kSpacing), settings);
+            const double found = error(smooth_ranges(noisy, settings), slanted);
+            EXPECT_GT(left, 0.5 * found) << noise << " " << target;
+            EXPECT_LT(left, 1.6 * found) << noise << " " << target;
+        }
+    }
+    EXPECT_EQ(remaining_deviation({}, {.spacing = kSpacing}), 0.0);
+    EXPECT_EQ(remaining_deviation({.deviation = 0.1, .pitch = 5.0}, {.spacing = kSpacing}), 0.1);
+}
+
 TEST(SmoothRanges, NoiseOfThreeSpacingsShrinksToATenth) {
     const PointCloud noisy = seen(slanted, 6.0);
     EXPECT_LT(error(smooth_ranges(noisy, {.spacing = kSpacing}), slanted), 0.8);

@@ -21,7 +21,7 @@ struct Case {
     RecognizedObject judged(const Pose& T_scene_model) const {
         Verified verified = verify(scan, probe(kCorner),
                                    {.model = kCorner, .T_scene_model = T_scene_model}, tolerance());
-        const Features features = features_of(verified, scan, tolerance());
+        const Features features = features_of(verified);
         return {.model = library().models[kCorner].name,
                 .model_index = kCorner,
                 .T_scene_model = T_scene_model,
@@ -90,7 +90,7 @@ TEST(Explanation, OfWhatFloatsInFrontOfTheScanSaysThatItIsContradicted) {
     const Explanation& one = explained.front();
     EXPECT_TRUE(one.outcome == Outcome::doubtful || one.outcome == Outcome::too_small);
     EXPECT_GT(one.verified.violation, one.verified.support);
-    EXPECT_TRUE(says(one, "contradict it in one piece: the sensor looked through it")) << one.verdict;
+    EXPECT_TRUE(says(one, "of them inside one piece: the sensor looked through it")) << one.verdict;
     EXPECT_TRUE(says(one, "Not reported")) << one.verdict;
 }
 

@@ -14,8 +14,7 @@ using namespace recognition_testing;
 Verified verify_at(const Scan& scan, std::uint32_t model, const Pose& T_scene_model) {
     Verified v =
         verify(scan, probe(model), {.model = model, .T_scene_model = T_scene_model}, tolerance());
-    v.confidence =
-        too_small(v) ? 0.0 : general_confidence().confidence(features_of(v, scan, tolerance()));
+    v.confidence = too_small(v) ? 0.0 : general_confidence().confidence(features_of(v));
     return v;
 }
 
@@ -119,6 +118,24 @@ TEST(Verify, AFaceLaidIntoAWallIsNotBelieved) {
 }
 
 // Where nothing was measured beside something nearer, the model may be in its shadow.
+// However noisy the scan, the right pose fits as is to be expected, and one that is off doesn't.
+TEST(Verify, TheDeviationIsWhatTheNoiseLetsExpect) {
+    const double sampling = library().settings.sampling;
+    for (const double noise : {0.1, 0.3, 0.6, 1.2}) {
+        const SimulatedScene scene =
+            scan_of(testing::corner_model(), Vec3d(150, -300, 260), noise * sampling);
+        const Scan scan = prepared(scene);
+        const Pose& truth = scene.objects[0].T_scene_model;
+        const Verified right = verify_at(scan, kCorner, truth);
+        EXPECT_LT(right.inlier_rms, 1.5 * right.expected_rms) << noise;
+        EXPECT_GT(right.inlier_rms, 0.3 * right.expected_rms) << noise;
+        Pose off = truth;
+        off.translation().z() += 2.0 * right.expected_rms + 0.3 * sampling;
+        const Verified wrong = verify_at(scan, kCorner, off);
+        EXPECT_GT(wrong.inlier_rms, 1.5 * wrong.expected_rms) << noise;
+    }
+}
+
 TEST(CheckCell, AMissingReturnInAShadowSaysNothing) {
     PointCloud wall;
     for (float y = -30.0F; y <= 30.0F; y += 0.5F) {
@@ -132,8 +149,10 @@ TEST(CheckCell, AMissingReturnInAShadowSaysNothing) {
         return check_cell(scan, scan.ranges.cell_of(piece.point), piece, 3.0F, 80.0F).verdict;
     };
     EXPECT_EQ(verdict(90.0F), CellVerdict::missing);
-    EXPECT_EQ(verdict(105.0F), CellVerdict::missing);
-    EXPECT_EQ(verdict(112.0F), CellVerdict::unsure);
+    // Five cells of 0.01 radians from the hole's rim.
+    const double begin = 100.0 / (1.0 - 0.05 / kParallax);
+    EXPECT_EQ(verdict(static_cast<float>(0.93 * begin)), CellVerdict::missing);
+    EXPECT_EQ(verdict(static_cast<float>(1.10 * begin)), CellVerdict::unsure);
 }
 
 TEST(SolidContradiction, CountsTheInsideOfPiecesButNoLines) {

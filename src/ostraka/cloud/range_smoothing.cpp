@@ -334,6 +334,14 @@ void require_spacing(double spacing) {
     if (!(spacing > 0.0)) throw InvalidInput("smoothing ranges: the spacing must be positive");
 }
 
+// Of the window, in cells; 0: none is needed, or none is wide enough to help.
+int window_radius(double deviation, double pitch, const RangeSmoothingSettings& settings) {
+    // A window of radius r pitches averages pi r^2 points.
+    const double wanted = deviation / (settings.target * settings.spacing * std::sqrt(kPi));
+    const double pixels = std::min(wanted, settings.max_radius * settings.spacing / pitch);
+    return static_cast<int>(std::lround(pixels / kCellPitch));
+}
+
 }  // namespace
 
 RangeNoise measure_range_noise(const PointCloud& cloud, double spacing) {
@@ -343,16 +351,21 @@ RangeNoise measure_range_noise(const PointCloud& cloud, double spacing) {
     return {image.noise() * spacing, image.cell() / kCellPitch * spacing};
 }
 
+double remaining_deviation(const RangeNoise& noise, const RangeSmoothingSettings& settings) {
+    require_spacing(settings.spacing);
+    if (!(noise.pitch > 0.0)) return noise.deviation;
+    const int radius = window_radius(noise.deviation, noise.pitch, settings);
+    if (radius < 1) return noise.deviation;
+    return noise.deviation / (std::sqrt(kPi) * kCellPitch * radius);
+}
+
 PointCloud smooth_ranges(const PointCloud& cloud, const RangeSmoothingSettings& settings) {
     require_spacing(settings.spacing);
     const RangeImage image(cloud, settings.spacing);
     if (!image.usable()) return cloud;
     const double noise = image.noise();
-    // A window of radius r pitches averages pi r^2 points.
     const double pitch = image.cell() / kCellPitch;
-    const double wanted = noise / (settings.target * std::sqrt(kPi));
-    const double pixels = std::min(wanted, settings.max_radius / pitch);
-    const int radius = static_cast<int>(std::lround(pixels / kCellPitch));
+    const int radius = window_radius(noise * settings.spacing, pitch * settings.spacing, settings);
     return radius >= 1 ? image.smoothed(radius, noise) : cloud;
 }
 

@@ -20,7 +20,7 @@ struct Quality {
     double noise;  // sampling distances
     int width;     // pixels of the sensor; 0: its own
 };
-constexpr std::array<Quality, 3> kQualities = {{{0.15, 0}, {0.3, 400}, {0.6, 0}}};
+constexpr std::array<Quality, 4> kQualities = {{{0.15, 0}, {0.3, 400}, {0.6, 0}, {2.0, 0}}};
 constexpr std::size_t kConditions = kKinds * kQualities.size();
 constexpr int kObjects = 8;                // dropped in each heap
 constexpr double kLeastConfidence = 0.02;  // of examples: what is below never matters

@@ -7,8 +7,8 @@ namespace ostraka {
 namespace {
 
 constexpr std::array<std::string_view, kFeatures> kNames = {
-    "constant", "agreement", "clearness", "misfit", "excess", "turned", "visible",
-    "area",     "cells",     "grip",      "open",   "sunk",   "solid"};
+    "constant", "agreement", "clearness", "surplus", "turned", "visible",
+    "area",     "cells",     "grip",      "open",    "sunk",   "solid"};
 
 }  // namespace
 
@@ -24,7 +24,7 @@ double ConfidenceModel::confidence(const Features& features) const {
 
 const ConfidenceModel& general_confidence() {
     static const ConfidenceModel model{
-        .weights = {-5.6, -1.5, 3.6, -1.15, -6.6, 2.8, 5.1, 0.2, 2.4, 5.0, -12.2, -20.0, -1.9}};
+        .weights = {-4.15, -4.05, 4.1, -1.95, -2.55, 3.8, -0.1, 3.1, 3.9, -14.5, -11.4, -0.95}};
     return model;
 }
 

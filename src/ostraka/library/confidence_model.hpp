@@ -13,8 +13,8 @@ enum class Feature : std::uint8_t {
     constant,   ///< 1
     agreement,  ///< support as a share of what can be judged
     clearness,  ///< its eighth power: 0.97 is much better than 0.9
-    misfit,     ///< deviation of the scan from the model, in tolerances
-    excess,     ///< what that exceeds the scan's own roughness by
+    surplus,    ///< what the scan's deviation from the model exceeds the one expected of noise and
+                ///< detail by, as a share of that; at most 2
     turned,     ///< mean of 1 - cosine between the normals of scan and model
     visible,    ///< share of the silhouette that the scan shows, at most 0.5
     area,       ///< logarithm of what supports, as an area in squared diameters

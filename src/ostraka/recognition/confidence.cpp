@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMinSupport = 40;  // cells
 constexpr double kEnoughVisible = 0.5;
-constexpr double kRoughness = 1.5;  // from a median to a deviation
+constexpr double kMostSurplus = 2.0;
 
 }  // namespace
 
@@ -17,7 +17,7 @@ bool too_small(const Verified& verified) {
     return verified.support < kMinSupport;
 }
 
-Features features_of(const Verified& v, const Scan& scan, double tolerance) {
+Features features_of(const Verified& v) {
     Features features{};
     const auto set = [&](Feature feature, double value) {
         features[static_cast<std::size_t>(feature)] = value;
@@ -27,8 +27,8 @@ Features features_of(const Verified& v, const Scan& scan, double tolerance) {
     set(Feature::constant, 1.0);
     set(Feature::agreement, agreement);
     set(Feature::clearness, std::pow(agreement, 8.0));
-    set(Feature::misfit, v.inlier_rms / tolerance);
-    set(Feature::excess, std::max(0.0, v.inlier_rms - kRoughness * scan.roughness) / tolerance);
+    const double surplus = v.expected_rms > 0.0 ? v.inlier_rms / v.expected_rms - 1.0 : 0.0;
+    set(Feature::surplus, std::clamp(surplus, 0.0, kMostSurplus));
     set(Feature::turned, v.turned);
     set(Feature::visible, std::min(v.visible_fraction, kEnoughVisible));
     set(Feature::area, std::log10(1.0 + 100.0 * v.area));

@@ -9,7 +9,6 @@ namespace ostraka {
 /// Too little support to say anything: such hypotheses are never reported.
 bool too_small(const Verified& verified);
 
-/// @param scan  that it was verified against, with this tolerance.
-Features features_of(const Verified& verified, const Scan& scan, double tolerance);
+Features features_of(const Verified& verified);
 
 }  // namespace ostraka

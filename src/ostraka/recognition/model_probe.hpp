@@ -29,6 +29,9 @@ class ModelProbe {
     const std::vector<Vec3f>& normals() const { return normals_; }
     /// Its flat faces, if much of its surface is flat; else none. Model frame.
     const std::vector<FlatFace>& faces() const { return faces_; }
+    /// How rough it is at the sampling distance: RMS distance of a point of the surface from the
+    /// tangent plane of the point next to it, where it isn't creased.
+    double detail() const { return detail_; }
     /// near_symmetries().
     const std::vector<Pose>& turns() const { return turns_; }
     /// Which samples the model itself doesn't hide from a sensor at `viewpoint` (model frame).
@@ -41,6 +44,7 @@ class ModelProbe {
     std::vector<Vec3f> samples_;
     std::vector<Vec3f> normals_;
     std::vector<FlatFace> faces_;
+    double detail_ = 0.0;
     std::vector<Pose> turns_;
     std::vector<Vec3f> directions_;                    // kProbeViews, model frame
     std::vector<std::bitset<kProbeSamples>> visible_;  // one per direction

@@ -75,6 +75,8 @@ constexpr double kSmoothRadius = 1.0;   // of the window, in sampling distances
 constexpr double kNormalPitches = 1.8;  // radius of the planes that normals come from, in distances
                                         // of pixels, where these are far apart: the eight around
 
+constexpr double kPitchDeviation = 0.17;  // in distances of pixels; fitted to simulated scans
+
 // What becomes of a scan's points.
 struct Sorted {
     PointCloud objects;               // what may be objects
@@ -105,30 +107,26 @@ Sorted sort_points(const PointCloud& scan, const Backdrop& backdrop, const FlatP
     return sorted;
 }
 
+RangeSmoothingSettings smoothing_to(double sampling) {
+    return {.spacing = sampling, .target = kSmoothTarget, .max_radius = kSmoothRadius};
+}
+
 // At the library's density, with normals.
 // @param pitch  distance between pixels of the scan.
 PointCloud at_density(const PointCloud& points, double sampling, double pitch) {
-    const RangeSmoothingSettings smoothing{
-        .spacing = sampling, .target = kSmoothTarget, .max_radius = kSmoothRadius};
-    PointCloud cloud = resample(smooth_ranges(points, smoothing), sampling);
+    PointCloud cloud = resample(smooth_ranges(points, smoothing_to(sampling)), sampling);
     const double radius = std::max(kNormalRadius * sampling, kNormalPitches * pitch);
     cloud.normals = estimate_normals_within(cloud, radius);
     return remove_invalid(cloud);
 }
 
-double roughness_of(const PointCloud& cloud, const RangeMap& ranges) {
-    std::vector<float> residuals;
-    for (std::uint32_t cell = 0; cell + 1 < ranges.size(); ++cell) {
-        const RangeCell& here = ranges[cell];
-        const RangeCell& beside = ranges[cell + 1];
-        if (!here.steady || !beside.steady || here.point == beside.point) continue;
-        const Vec3f step = cloud.points[beside.point] - cloud.points[here.point];
-        residuals.push_back(std::abs(cloud.normals[here.point].dot(step)));
-    }
-    if (residuals.empty()) return 0.0;
-    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-    std::nth_element(residuals.begin(), middle, residuals.end());
-    return double{*middle};
+// Of a point at the library's density: points are averaged by smoothing, or if there was none by
+// resampling; and far apart, none is in the middle of its cell.
+double deviation_left(const RangeNoise& noise, double sampling) {
+    double left = remaining_deviation(noise, smoothing_to(sampling));
+    const double per_side = noise.pitch > 0.0 ? sampling / noise.pitch : 1.0;
+    left = std::min(left, noise.deviation / std::max(1.0, per_side));
+    return std::hypot(left, kPitchDeviation * noise.pitch);
 }
 
 std::vector<float> extents_at(const PointCloud& cloud, const Backdrop& backdrop) {
@@ -211,7 +209,7 @@ Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
               .table = table_plane(table),
               .sampling = sampling,
               .cell = cell};
-    scan.roughness = roughness_of(scan.cloud, scan.ranges);
+    scan.deviation = deviation_left(noise, sampling);
     return scan;
 }
 

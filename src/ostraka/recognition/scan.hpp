@@ -30,8 +30,8 @@ struct Scan {
                                   ///< there; empty: none was
     double sampling = 0.0;
     double cell = 0.0;       ///< side of a cell of the range map at the scan's median distance
-    double roughness = 0.0;  ///< what noise is left in smooth surface: median distance of a point
-                             ///< from the tangent plane of one beside it; scan's unit
+    double deviation = 0.0;  ///< expected of the cloud's points along the line of sight, from the
+                             ///< noise that was measured; scan's unit; 0 if merged
 };
 
 /// @param raw        at any density; NaN points are "no return"; viewpoint set.

@@ -160,7 +160,7 @@ Judged SceneSearch::judge(const Hypothesis& hypothesis, int round) const {
     const double tolerance = settings_.tolerance * scan_.sampling;
     Judged one;
     one.verified = verify(scan_, probes_[hypothesis.model], hypothesis, tolerance);
-    one.features = features_of(one.verified, scan_, tolerance);
+    one.features = features_of(one.verified);
     one.round = round;
     one.verified.confidence =
         too_small(one.verified) ? 0.0 : confidence_model_.confidence(one.features);

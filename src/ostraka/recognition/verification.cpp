@@ -13,6 +13,10 @@ namespace {
 
 constexpr double kMissingWeight = 0.5;  // a missing return contradicts by half: sensors drop some
 
+constexpr double kRegistration = 0.1;     // sampling distances: resampling and registration
+constexpr double kDetailDeviation = 3.3;  // smoothing and resampling make of the detail; fitted to
+                                          // simulated scans of statues and machine parts
+
 // The model's surface where a ray meets it; smoothed, as single triangles of a scanned mesh are
 // rough. Model frame.
 Vec3d normal_at(const ModelProbe& probe, const RayHit& hit, const Vec3d& at) {
@@ -127,6 +131,8 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
         if (check.verdict == CellVerdict::support) result.cells.push_back(window[i]);
     }
     add_shares(sums, result);
+    result.expected_rms = std::hypot(scan.deviation, kDetailDeviation * probe.detail(),
+                                     kRegistration * scan.sampling);
     const double cell_area = scan.cell * scan.cell;
     result.area =
         static_cast<double>(result.support) * cell_area / (shape.diameter * shape.diameter);

@@ -25,6 +25,7 @@ struct Verified {
     double open = 0.0;           ///< open_share(): where the model ends, the scan's surface doesn't
     double inlier_rms = 0.0;     ///< of the distances of supporting cells, along the normal; scan's
                                  ///< unit
+    double expected_rms = 0.0;   ///< of the same: what noise and the model's detail account for
     double turned = 0.0;         ///< mean of 1 - cosine between the normals of supporting cells
     double grip = 0.0;           ///< how well the support holds the model in place: smallest
                                  ///< eigenvalue of its normals' scatter, times 3; 0: a plane
