@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/recognition/model_probe.hpp"
 
-#include <cmath>
-
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/cloud/farthest_points.hpp"
-#include "ostraka/cloud/kdtree.hpp"
 #include "ostraka/recognition/near_symmetry.hpp"
+#include "ostraka/recognition/surface_roughness.hpp"
 #include "ostraka/views/viewpoints.hpp"
 
 namespace ostraka {
@@ -17,8 +15,6 @@ constexpr double kFieldMargin = 0.1;   // of the diameter: how far off a pose ma
 constexpr double kViewDistance = 3.0;  // diameters
 constexpr double kHitTolerance = 1.0;  // sampling distances
 constexpr double kFlatShare = 0.3;     // of the surface on faces, from which a part is flat or boxy
-constexpr std::size_t kDetailPoints = 4000;
-constexpr float kCrease = 0.8F;  // cosine between normals beyond which there is an edge
 
 std::vector<FlatFace> faces_of(const PointCloud& surface, double sampling) {
     std::vector<FlatFace> faces = flat_faces(surface, sampling);
@@ -28,24 +24,6 @@ std::vector<FlatFace> faces_of(const PointCloud& surface, double sampling) {
     return faces;
 }
 
-double detail_of(const PointCloud& surface) {
-    const KdTree tree(surface.points);
-    std::vector<Neighbor> next;
-    double squares = 0.0;
-    std::size_t count = 0;
-    const std::size_t stride = 1 + surface.size() / kDetailPoints;
-    for (std::size_t i = 0; i < surface.size(); i += stride) {
-        tree.nearest(surface.points[i], 2, next);
-        const std::uint32_t beside = next.back().index;
-        const Vec3f& normal = surface.normals[i];
-        if (normal.dot(surface.normals[beside]) < kCrease) continue;
-        const float off = normal.dot(surface.points[beside] - surface.points[i]);
-        squares += double{off} * double{off};
-        ++count;
-    }
-    return count == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(count));
-}
-
 }  // namespace
 
 ModelProbe::ModelProbe(const Model& model, double sampling)
@@ -53,7 +31,7 @@ ModelProbe::ModelProbe(const Model& model, double sampling)
       field_(model.surface, kFieldCell * sampling, kFieldMargin * model.shape.diameter),
       rays_({model.mesh}),
       faces_(faces_of(model.surface, sampling)),
-      detail_(detail_of(model.surface)) {
+      detail_(surface_roughness(model.surface)) {
     for (const std::uint32_t i : farthest_points(model.surface.points, kProbeSamples)) {
         samples_.push_back(model.surface.points[i]);
         normals_.push_back(model.surface.normals[i]);

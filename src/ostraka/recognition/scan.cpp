@@ -14,6 +14,7 @@
 #include "ostraka/cloud/range_smoothing.hpp"
 #include "ostraka/cloud/resample.hpp"
 #include "ostraka/recognition/backdrop.hpp"
+#include "ostraka/recognition/surface_roughness.hpp"
 
 namespace ostraka {
 namespace {
@@ -167,6 +168,7 @@ Scan prepare_merged(const PointCloud& valid, double sampling, double model_diame
     std::optional<SurfaceField> field;
     if (!cloud.empty()) field.emplace(cloud, kMergedCell * sampling, kMergedMargin * sampling);
     std::vector<float> extents = extents_at(cloud, backdrop);
+    const double deviation = cloud.empty() ? 0.0 : surface_roughness(cloud);
     return {.cloud = std::move(cloud),
             .plane_extents = std::move(extents),
             .ranges = RangeMap({}, {}, {}, sampling),
@@ -174,7 +176,8 @@ Scan prepare_merged(const PointCloud& valid, double sampling, double model_diame
             .views = std::move(views),
             .table = table_plane(table),
             .sampling = sampling,
-            .cell = sampling};
+            .cell = sampling,
+            .deviation = deviation};
 }
 
 }  // namespace

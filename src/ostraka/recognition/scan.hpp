@@ -31,7 +31,8 @@ struct Scan {
     double sampling = 0.0;
     double cell = 0.0;       ///< side of a cell of the range map at the scan's median distance
     double deviation = 0.0;  ///< expected of the cloud's points along the line of sight, from the
-                             ///< noise that was measured; scan's unit; 0 if merged
+                             ///< noise that was measured; scan's unit; if merged, their
+                             ///< surface_roughness()
 };
 
 /// @param raw        at any density; NaN points are "no return"; viewpoint set.

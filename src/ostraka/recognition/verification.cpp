@@ -93,6 +93,11 @@ double Verified::agreement() const {
     return judged > 0.0 ? static_cast<double>(support) / judged : 0.0;
 }
 
+double expected_deviation(const Scan& scan, const ModelProbe& probe) {
+    return std::hypot(scan.deviation, kDetailDeviation * probe.detail(),
+                      kRegistration * scan.sampling);
+}
+
 Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hypothesis,
                 double tolerance, CellVerdicts* detail) {
     if (scan.merged) return verify_merged(scan, probe, hypothesis, tolerance);
@@ -131,8 +136,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
         if (check.verdict == CellVerdict::support) result.cells.push_back(window[i]);
     }
     add_shares(sums, result);
-    result.expected_rms = std::hypot(scan.deviation, kDetailDeviation * probe.detail(),
-                                     kRegistration * scan.sampling);
+    result.expected_rms = expected_deviation(scan, probe);
     const double cell_area = scan.cell * scan.cell;
     result.area =
         static_cast<double>(result.support) * cell_area / (shape.diameter * shape.diameter);

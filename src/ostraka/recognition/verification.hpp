@@ -46,6 +46,10 @@ struct CellVerdicts {
     std::vector<CellVerdict> verdicts;
 };
 
+/// Of `inlier_rms`: what the scan's noise, the model's detail, resampling and registration account
+/// for.
+double expected_deviation(const Scan& scan, const ModelProbe& probe);
+
 /// All but the confidence.
 /// @param tolerance  distance along the normal that counts as agreement, in the scan's unit.
 /// @param detail  also gets the verdict of each cell, if given.
