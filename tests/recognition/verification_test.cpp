@@ -117,7 +117,6 @@ TEST(Verify, AFaceLaidIntoAWallIsNotBelieved) {
     }
 }
 
-// Where nothing was measured beside something nearer, the model may be in its shadow.
 // However noisy the scan, the right pose fits as is to be expected, and one that is off doesn't.
 TEST(Verify, TheDeviationIsWhatTheNoiseLetsExpect) {
     const double sampling = library().settings.sampling;
@@ -136,6 +135,7 @@ TEST(Verify, TheDeviationIsWhatTheNoiseLetsExpect) {
     }
 }
 
+// Where nothing was measured beside something nearer, the model may be in its shadow.
 TEST(CheckCell, AMissingReturnInAShadowSaysNothing) {
     PointCloud wall;
     for (float y = -30.0F; y <= 30.0F; y += 0.5F) {

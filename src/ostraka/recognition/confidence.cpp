@@ -27,6 +27,7 @@ Features features_of(const Verified& v) {
     set(Feature::constant, 1.0);
     set(Feature::agreement, agreement);
     set(Feature::clearness, std::pow(agreement, 8.0));
+    // Nothing is expected of what has no support.
     const double surplus = v.expected_rms > 0.0 ? v.inlier_rms / v.expected_rms - 1.0 : 0.0;
     set(Feature::surplus, std::clamp(surplus, 0.0, kMostSurplus));
     set(Feature::turned, v.turned);
