@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "evaluate_output.hpp"
+#include "ostraka/base/error.hpp"
 #include "ostraka/library/edit.hpp"
 #include "ostraka/library/library_file.hpp"
 
@@ -36,8 +37,19 @@ void write_examples(const std::vector<Example>& examples, const std::string& pat
     write_csv(rows, path);
 }
 
+// How the weights for merged scans are learned: they are the same for all libraries.
+void learn_from_merged(const CalibrateOptions& options) {
+    if (options.examples.empty()) {
+        throw InvalidInput("--viewpoint-unknown only writes --examples: name a file for them");
+    }
+    write_examples(
+        calibration_examples(load_library(options.library), options.settings, progress_bar()),
+        options.examples);
+}
+
 void run_calibrate(const CalibrateOptions& options) {
     catch_interrupts();
+    if (!options.settings.viewpoint_known) return learn_from_merged(options);
     const CalibrationResult result = calibrate_library(options.library, options.settings);
     write_examples(result.examples, options.examples);
     Json weights = Json::object();
@@ -88,6 +100,9 @@ void add_calibrate(CLI::App& parent) {
     command->add_option("--examples", options->examples,
                         "write what it learned from as CSV: the features of each report, and "
                         "whether it was right");
+    command->add_flag_callback(
+        "--viewpoint-unknown", [options] { options->settings.viewpoint_known = false; },
+        "give the scenes as merged scans, and leave the library as it is: for --examples only");
     add_common(*command, options->common);
     command->callback([options] { run_calibrate(*options); });
 }

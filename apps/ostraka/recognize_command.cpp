@@ -69,6 +69,7 @@ Json recognition_json(const ModelLibrary& library, const Recognition& result,
                            {"inlier_rms", object.inlier_rms * factor},
                            {"source", object.source},
                            {"round", object.round},
+                           {"rival", object.rival},
                            {"features", features_json(object.features)}});
     }
     Json seconds = Json::object();

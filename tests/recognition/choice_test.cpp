@@ -75,6 +75,28 @@ TEST(Choose, OfPosesOfOneModelAtOnePlaceTheOneWhoseDepthsFitBest) {
     EXPECT_EQ(chosen_of({surer, doubtful}, 0.5), (std::vector<std::size_t>{0}));
 }
 
+TEST(BestRival, IsTheOtherModelThatExplainsMostOfTheSame) {
+    std::vector<Verified> candidates = {candidate(0.99, 0, 100), candidate(0.9, 20, 100),
+                                        candidate(0.9, 0, 100), candidate(0.999, 70, 170)};
+    const auto rival_of_first = [&] {
+        std::vector<const Verified*> pointers;
+        for (const Verified& v : candidates) pointers.push_back(&v);
+        return best_rival(candidates[0], pointers);
+    };
+    EXPECT_EQ(rival_of_first().value, 0.0);  // all are poses of one model
+    candidates[1].hypothesis.model = 1;
+    candidates[3].hypothesis.model = 3;  // shares too little
+    EXPECT_EQ(rival_of_first().number, 1U);
+    // log(0.1) 80 / (log(0.01) 100)
+    EXPECT_NEAR(rival_of_first().value, 0.4, 1e-12);
+    candidates[2].hypothesis.model = 2;
+    EXPECT_EQ(rival_of_first().number, 2U);
+    EXPECT_NEAR(rival_of_first().value, 0.5, 1e-12);
+    candidates[2].confidence = 0.9999;
+    EXPECT_EQ(rival_of_first().value, 1.0);  // of one that explains more, too
+    EXPECT_EQ(best_rival(candidates[0], {}).value, 0.0);
+}
+
 // The value that choose() maximizes, of a set without conflicts; -1 of others.
 double value_of_set(const std::vector<Verified>& candidates, unsigned set) {
     double value = 0.0;

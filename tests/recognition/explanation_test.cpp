@@ -80,6 +80,16 @@ TEST(Explanation, OfATwinNamesTheObjectItLostTo) {
     EXPECT_TRUE(says(explained[1], "explained better by " + rival)) << explained[1].verdict;
 }
 
+TEST(Explanation, NamesTheModelThatExplainsTheSameAsWell) {
+    Case test;
+    test.report(test.truth());
+    RecognizedObject& object = test.recognition.objects.front();
+    object.rival = "bracket";
+    object.features[static_cast<std::size_t>(Feature::rival)] = 0.87;
+    const Explanation one = test.explained().front();
+    EXPECT_TRUE(says(one, "Against it: bracket explains the same 87 % as well")) << one.verdict;
+}
+
 TEST(Explanation, OfWhatFloatsInFrontOfTheScanSaysThatItIsContradicted) {
     Case test;
     // Half of the way out of the surface: some of it still fits, the sensor saw through the rest.

@@ -254,6 +254,28 @@ TEST(Recognize, TheThresholdDecidesWhatIsReported) {
     }));
 }
 
+// With its twin in the library, which of the two it is nobody can tell.
+TEST(Recognize, AModelThatAnotherMatchesAsWellIsLessSure) {
+    std::vector<ModelSource> sources = testing::simple_models();
+    sources.push_back({.name = "twin", .mesh = testing::corner_model()});
+    const ModelLibrary twins = build_library(sources, testing::quick_settings());
+    const Recognizer recognizer(twins);
+    const SimulatedScene scene = tabletop({kCorner}, 1);
+    const Recognition sure = recognizer.recognize(scene.cloud, {.only = {kCorner, kPlate}});
+    const Recognition doubtful = recognizer.recognize(scene.cloud, {.min_confidence = 0.01});
+    const auto rivalry = [](const RecognizedObject& object) {
+        return object.features[static_cast<std::size_t>(Feature::rival)];
+    };
+    ASSERT_EQ(sure.objects.size(), 1U);
+    EXPECT_LT(rivalry(sure.objects[0]), 0.5);
+    ASSERT_GE(doubtful.objects.size(), 1U);
+    const RecognizedObject& either = doubtful.objects[0];
+    EXPECT_GT(rivalry(either), 0.9);
+    EXPECT_EQ(either.rival, either.model == "twin" ? "corner" : "twin");
+    EXPECT_LT(either.confidence, sure.objects[0].confidence);
+    EXPECT_DOUBLE_EQ(either.confidence, doubtful.judge.confidence(either.features));
+}
+
 TEST(Recognize, LibraryAndScanInMetersGiveTheSameObjects) {
     std::vector<ModelSource> in_meters = testing::simple_models();
     for (ModelSource& model : in_meters) model.mesh = scaled(model.mesh, 0.001);

@@ -22,6 +22,7 @@ struct Quality {
 };
 constexpr std::array<Quality, 4> kQualities = {{{0.15, 0}, {0.3, 400}, {0.6, 0}, {2.0, 0}}};
 constexpr std::size_t kConditions = kKinds * kQualities.size();
+constexpr std::size_t kFewKnown = 6;       // one in six: then hardly any model has a rival
 constexpr int kObjects = 8;                // dropped in each heap
 constexpr double kLeastConfidence = 0.02;  // of examples: what is below never matters
 constexpr int kSteps = 100;                // of Newton's method, at most
@@ -51,7 +52,7 @@ SceneRecipe recipe_of(const ModelLibrary& library, std::size_t condition, std::u
     return drop;
 }
 
-// Half of the models, drawn anew for each scene; all in every other scene.
+// All models in every other scene; else half of them or a few, drawn anew for each scene.
 std::vector<std::uint32_t> known_models(const ModelLibrary& library, std::size_t scene,
                                         std::uint64_t seed) {
     if (scene % 2 == 0 || library.models.size() < 2) return {};
@@ -61,7 +62,8 @@ std::vector<std::uint32_t> known_models(const ModelLibrary& library, std::size_t
     for (std::uint32_t i = static_cast<std::uint32_t>(known.size()) - 1; i > 0; --i) {
         std::swap(known[i], known[random.below(i + 1)]);
     }
-    known.resize((known.size() + 1) / 2);
+    const std::size_t share = scene % 4 == 1 ? 2 : kFewKnown;
+    known.resize((known.size() + share - 1) / share);
     std::sort(known.begin(), known.end());
     return known;
 }
@@ -100,6 +102,7 @@ std::vector<Example> calibration_examples(const ModelLibrary& library,
             report(progress, "calibrate", done++, scenes);
             SceneSettings scene_settings;
             scene_settings.recognition.min_confidence = kLeastConfidence;
+            scene_settings.recognition.viewpoint_known = settings.viewpoint_known;
             scene_settings.recognition.only = known_models(library, condition + number, seed);
             const auto some =
                 examples_of(set.load(number), recognizer, judge, scene_settings, settings.max_adi);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a report is worth: learned from simulated scenes of a library's own models, in half of which
-// half of the models are unknown. Platt. Probabilistic Outputs for Support Vector Machines and
-// Comparisons to Regularized Likelihood Methods. 1999. Departs from the paper: several features
-// instead of one score, and few examples leave the general weights as they are.
+// What a report is worth: learned from simulated scenes of a library's own models. In every
+// other scene a half or five sixths of the models are unknown. Platt. Probabilistic Outputs for
+// Support Vector Machines and Comparisons to Regularized Likelihood Methods. 1999. Departs from the
+// paper: several features instead of one score, and few examples leave the general weights as they
+// are.
 #pragma once
 
 #include <span>
@@ -18,6 +19,8 @@ struct CalibrationSettings {
     double prior = 8.0;    ///< how much the general weights count: larger, the less is learned
     double max_adi = 0.1;  ///< pose error of a right report, in model diameters
     std::uint64_t seed = 0;
+    bool viewpoint_known = true;  ///< false: the scenes are given as merged scans, from nobody
+                                  ///< knows where (RecognitionSettings::viewpoint_known)
 };
 
 /// What was reported in a simulated scene.

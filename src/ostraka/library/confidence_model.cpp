@@ -7,8 +7,8 @@ namespace ostraka {
 namespace {
 
 constexpr std::array<std::string_view, kFeatures> kNames = {
-    "constant", "agreement", "clearness", "surplus", "turned", "visible",
-    "area",     "cells",     "grip",      "open",    "sunk",   "solid"};
+    "constant", "agreement", "clearness", "surplus", "turned", "visible", "area",
+    "cells",    "grip",      "open",      "sunk",    "solid",  "rival"};
 
 }  // namespace
 
@@ -24,7 +24,15 @@ double ConfidenceModel::confidence(const Features& features) const {
 
 const ConfidenceModel& general_confidence() {
     static const ConfidenceModel model{
-        .weights = {-4.15, -4.05, 4.1, -1.95, -2.55, 3.8, -0.1, 3.1, 3.9, -14.5, -11.4, -0.95}};
+        .weights = {-4.25, -2.45, 3.95, -2.3, -1.7, 0.8, 0.1, 3.7, 2.9, -19.7, -60.0, -1.2, -2.95}};
+    return model;
+}
+
+// agreement and clearness are given, not learned: of what was learned from, the wrong ones came up
+// because they agree.
+const ConfidenceModel& merged_confidence() {
+    static const ConfidenceModel model{
+        .weights = {-4.7, 0.0, 2.0, -0.8, -17.5, 12.0, 1.5, -1.1, 4.7, 0.0, 0.0, 0.0, -1.7}};
     return model;
 }
 

@@ -23,6 +23,7 @@ enum class Feature : std::uint8_t {
     open,       ///< share of the outline where the scan's surface goes on
     sunk,       ///< share that would be below the table
     solid,      ///< logarithm of what contradicts in one piece, as cells of the range map
+    rival,      ///< how well the best other model explains the same, as a share; at most 1
     count       // how many there are
 };
 inline constexpr std::size_t kFeatures = static_cast<std::size_t>(Feature::count);
@@ -39,5 +40,8 @@ struct ConfidenceModel {
 /// Fitted to simulated scenes of shipped and other parts; one that is fitted to a library's own
 /// models knows which of them are easily mistaken.
 const ConfidenceModel& general_confidence();
+
+/// The same for merged scans: where nothing is known of free space, other things count.
+const ConfidenceModel& merged_confidence();
 
 }  // namespace ostraka

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kMaxShared = 0.35;  // of the smaller support of two that may stand together
 constexpr double kSamePlace = 0.7;   // of the smaller support of two poses at the same place
+constexpr double kSamePiece = 0.5;   // of the smaller support of rivals
 constexpr double kAsMuch = 0.9;      // of the explained value of another pose of the model
 constexpr int kMaxSteps = 200'000;   // of branch and bound, a group of conflicting hypotheses
 
@@ -148,6 +149,18 @@ double shared_support(const Verified& a, const Verified& b) {
 
 bool in_conflict(const Verified& a, const Verified& b) {
     return shared_support(a, b) > kMaxShared;
+}
+
+Rival best_rival(const Verified& v, std::span<const Verified* const> candidates) {
+    Rival best;
+    const double own = explained_value(v);
+    for (std::size_t i = 0; i < candidates.size() && own > 0.0; ++i) {
+        const Verified& other = *candidates[i];
+        if (other.hypothesis.model == v.hypothesis.model) continue;
+        const double value = std::min(1.0, explained_value(other) / own);
+        if (value > best.value && shared_support(v, other) > kSamePiece) best = {i, value};
+    }
+    return best;
 }
 
 std::vector<std::size_t> choose(std::span<const Verified* const> candidates,

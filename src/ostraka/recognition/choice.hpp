@@ -25,6 +25,18 @@ double shared_support(const Verified& a, const Verified& b);
 /// Whether they explain too much of the same cells to stand together.
 bool in_conflict(const Verified& a, const Verified& b);
 
+/// The hypothesis of another model that explains best what `v` explains.
+struct Rival {
+    std::size_t number = 0;  ///< of the candidates
+    double value = 0.0;  ///< its explained_value(), as a share of that of `v`, at most 1; 0: none
+};
+
+/// A model that isn't in the scan often explains a piece of it no better than others do: what is
+/// told apart clearly is much more often right (the ratio test of D. G. Lowe, IJCV 2004, for
+/// objects).
+/// @param candidates  `v` may be among them.
+Rival best_rival(const Verified& v, std::span<const Verified* const> candidates);
+
 /// Of the hypotheses at or above `min_confidence` the set with the greatest sum of
 /// explained_value(), no two of which explain more than a third of the same cells. Of
 /// poses of one model at the same place only those take part that none fits_better() than.

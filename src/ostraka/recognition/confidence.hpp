@@ -9,6 +9,7 @@ namespace ostraka {
 /// Too little support to say anything: such hypotheses are never reported.
 bool too_small(const Verified& verified);
 
+/// All but Feature::rival, which is 0: only the whole search tells of rivals.
 Features features_of(const Verified& verified);
 
 }  // namespace ostraka

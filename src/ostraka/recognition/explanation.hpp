@@ -49,8 +49,8 @@ std::vector<Explanation> explain(const ModelLibrary& library, const Recognition&
                                  const Scan& scan, const RecognitionSettings& settings,
                                  const ExplanationSettings& wish = {});
 
-/// What a right report's feature is about like: set by eye from reports on shipped and real scans,
-/// not measured. 0 for a feature that nothing is known of.
+/// What a right report's feature is about like: the median of the reports that the general weights
+/// were learned from. 0 for a feature that nothing is known of.
 double typical_value(Feature feature);
 
 }  // namespace ostraka

@@ -20,7 +20,7 @@ struct FeatureFacts {
     double typical;
 };
 // Medians of the right reports that the general weights were learned from.
-constexpr std::array<FeatureFacts, 12> kFacts = {{{"constant", "", 1.0},
+constexpr std::array<FeatureFacts, 13> kFacts = {{{"constant", "", 1.0},
                                                   {"agreement", "agreement", 0.997},
                                                   {"clearness", "agreement", 0.973},
                                                   {"surplus", "fit", 0.0},
@@ -31,7 +31,8 @@ constexpr std::array<FeatureFacts, 12> kFacts = {{{"constant", "", 1.0},
                                                   {"grip", "grip", 0.617},
                                                   {"open", "outline", 0.0},
                                                   {"sunk", "sunk", 0.0},
-                                                  {"solid", "contradiction", 0.0}}};
+                                                  {"solid", "contradiction", 0.0},
+                                                  {"rival", "rival", 0.0}}};
 
 // Nothing of a feature that is not in the list.
 const FeatureFacts* facts_of(Feature feature) {
@@ -115,6 +116,7 @@ bool worse_than_usual(std::string_view topic, const Explanation& one) {
     if (topic == "outline") return higher(Feature::open);
     if (topic == "sunk") return higher(Feature::sunk);
     if (topic == "contradiction") return higher(Feature::solid);
+    if (topic == "rival") return higher(Feature::rival);
     return true;
 }
 
@@ -151,6 +153,12 @@ std::string words_for(std::string_view topic, const Explanation& one, bool again
             "{} cells contradict it{}: the sensor looked through it there, or the surface faces "
             "elsewhere",
             v.violation + v.backdrop, together);
+    }
+    if (topic == "rival") {
+        if (one.object.rival.empty()) return "no other model explains the same";
+        const double value = one.object.features[static_cast<std::size_t>(Feature::rival)];
+        return fmt::format("{} explains the same {} as well", one.object.rival,
+                           against ? percent(value) : "only " + percent(value));
     }
     return fmt::format("its {} is {}", topic, against ? "unusual" : "as usual");
 }

@@ -29,18 +29,21 @@ double largest_diameter(const ModelLibrary& library) {
     return largest;
 }
 
-RecognizedObject report_object(const Judged& judged, const ModelLibrary& library) {
+RecognizedObject report_object(const Judged& judged, const Standing& standing,
+                               const ModelLibrary& library) {
     const Verified& verified = judged.verified;
     const Hypothesis& hypothesis = verified.hypothesis;
     return {.model = library.models[hypothesis.model].name,
             .model_index = hypothesis.model,
             .T_scene_model = hypothesis.T_scene_model,
-            .confidence = verified.confidence,
+            .confidence = standing.confidence,
             .visible_fraction = verified.visible_fraction,
             .inlier_rms = verified.inlier_rms,
             .source = std::string(source_name(hypothesis.source)),
             .round = judged.round,
-            .features = judged.features};
+            .features = standing.features,
+            .rival = standing.rival_model == kNoIndex ? std::string()
+                                                      : library.models[standing.rival_model].name};
 }
 
 // Of the reported ones that explain too much of the same, the one that explains most of it.
@@ -59,12 +62,19 @@ std::uint32_t winner_over(std::size_t candidate, const std::vector<Judged>& judg
     return winner;
 }
 
-void add_candidates(const std::vector<Judged>& judged, const std::vector<std::size_t>& reported,
+void add_candidates(const SceneSearch& search, const std::vector<std::size_t>& reported,
                     const ModelLibrary& library, Recognition& result) {
+    const std::vector<Judged>& judged = search.judged();
     result.lost_to.resize(judged.size());
-    parallel_for(judged.size(),
-                 [&](std::size_t i) { result.lost_to[i] = winner_over(i, judged, reported); });
-    for (const Judged& one : judged) result.candidates.push_back(report_object(one, library));
+    result.candidates.resize(judged.size());
+    parallel_for(judged.size(), [&](std::size_t i) {
+        result.lost_to[i] = winner_over(i, judged, reported);
+        // Of what lost its own confidence is told: that it has a rival is known.
+        const bool lost = result.lost_to[i] != kNoIndex && reported[result.lost_to[i]] != i;
+        const Standing standing =
+            lost ? Standing{judged[i].features, judged[i].verified.confidence} : search.standing(i);
+        result.candidates[i] = report_object(judged[i], standing, library);
+    });
 }
 
 }  // namespace
@@ -101,10 +111,11 @@ Recognition Recognizer::recognize(const PointCloud& scene,
     search.run();
     const std::vector<std::size_t> reported = search.explanation(settings.min_confidence);
     for (const std::size_t i : reported) {
-        result.objects.push_back(report_object(search.judged()[i], self.library));
+        result.objects.push_back(
+            report_object(search.judged()[i], search.standing(i), self.library));
     }
     if (settings.keep_candidates) {
-        add_candidates(search.judged(), reported, self.library, result);
+        add_candidates(search, reported, self.library, result);
     }
     result.judge = search.confidence_model();
     result.seconds = search.seconds();

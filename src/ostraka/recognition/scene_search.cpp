@@ -43,7 +43,8 @@ void mark_points(const Verified& object, const ModelProbe& probe, Scan& scan) {
 
 // A library's own weights were learned from scans of one viewpoint.
 const ConfidenceModel& model_of(const ModelLibrary& library, const Scan& scan) {
-    return library.confidence && !scan.merged ? *library.confidence : general_confidence();
+    if (scan.merged) return merged_confidence();
+    return library.confidence ? *library.confidence : general_confidence();
 }
 
 }  // namespace
@@ -227,10 +228,36 @@ std::size_t SceneSearch::unexplained() const {
         std::count(scan_.explained.begin(), scan_.explained.end(), char{0}));
 }
 
-std::vector<std::size_t> SceneSearch::explanation(double min_confidence) const {
+std::vector<const Verified*> SceneSearch::verified() const {
     std::vector<const Verified*> all;
     for (const Judged& one : judged_) all.push_back(&one.verified);
-    return choose(all, min_confidence);
+    return all;
+}
+
+// What wins over its rivals only by a little is in doubt, but its rivals are not right for that:
+// who wins is decided before.
+std::vector<std::size_t> SceneSearch::explanation(double min_confidence) const {
+    std::vector<std::pair<double, std::size_t>> sure;
+    for (const std::size_t i : choose(verified(), min_confidence)) {
+        const double confidence = standing(i).confidence;
+        if (confidence >= min_confidence) sure.emplace_back(confidence, i);
+    }
+    std::stable_sort(sure.begin(), sure.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<std::size_t> numbers;
+    for (const auto& [confidence, i] : sure) numbers.push_back(i);
+    return numbers;
+}
+
+Standing SceneSearch::standing(std::size_t number) const {
+    const Judged& one = judged_[number];
+    Standing result{.features = one.features, .confidence = one.verified.confidence};
+    const Rival rival = best_rival(one.verified, verified());
+    if (rival.value == 0.0) return result;
+    result.rival_model = judged_[rival.number].verified.hypothesis.model;
+    result.features[static_cast<std::size_t>(Feature::rival)] = rival.value;
+    if (!too_small(one.verified)) result.confidence = confidence_model_.confidence(result.features);
+    return result;
 }
 
 bool SceneSearch::asked_for(std::size_t model) const {

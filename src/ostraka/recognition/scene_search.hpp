@@ -19,6 +19,13 @@ struct Judged {
     int round = 0;  ///< in which it came up
 };
 
+/// What remains of a hypothesis' confidence beside what else was verified.
+struct Standing {
+    Features features{};
+    double confidence = 0.0;
+    std::uint32_t rival_model = kNoIndex;  ///< that explains the same best
+};
+
 class SceneSearch {
   public:
     /// @param scan  prepared with the same settings. All but it must outlive the search.
@@ -30,8 +37,10 @@ class SceneSearch {
     /// All that was verified.
     const std::vector<Judged>& judged() const { return judged_; }
     /// The best explanation of the scan: numbers of what was judged, most confident first.
-    /// @param min_confidence  of each.
+    /// @param min_confidence  of each, its rivals considered.
     std::vector<std::size_t> explanation(double min_confidence) const;
+    /// @param number  of what was judged.
+    Standing standing(std::size_t number) const;
     /// What confidence comes from.
     const ConfidenceModel& confidence_model() const { return confidence_model_; }
     /// Wall time of each stage.
@@ -52,6 +61,7 @@ class SceneSearch {
     std::size_t unexplained() const;
     bool late() const;
     bool expired();
+    std::vector<const Verified*> verified() const;
     bool asked_for(std::size_t model) const;
 
     const EntryIndex& index_;
