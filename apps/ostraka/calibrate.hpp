@@ -15,7 +15,8 @@ struct CalibrationResult {
     std::size_t right() const;  ///< how many of them were
 };
 
-/// Learns from simulated scenes and stores the result in the file. Tells people.
+/// Learns from simulated scenes how reports in scans of settings.kind are to be judged, and stores
+/// the result in the file. Tells people.
 CalibrationResult calibrate_library(const std::string& library,
                                     const CalibrationSettings& settings);
 

@@ -37,31 +37,22 @@ void write_examples(const std::vector<Example>& examples, const std::string& pat
     write_csv(rows, path);
 }
 
-// How the weights for merged scans are learned: they are the same for all libraries.
-void learn_from_merged(const CalibrateOptions& options) {
-    if (options.examples.empty()) {
-        throw InvalidInput("--viewpoint-unknown only writes --examples: name a file for them");
-    }
-    write_examples(
-        calibration_examples(load_library(options.library), options.settings, progress_bar()),
-        options.examples);
-}
-
-void run_calibrate(const CalibrateOptions& options) {
-    catch_interrupts();
-    if (!options.settings.viewpoint_known) return learn_from_merged(options);
-    const CalibrationResult result = calibrate_library(options.library, options.settings);
-    write_examples(result.examples, options.examples);
+Json result_json(const CalibrationResult& result) {
     Json weights = Json::object();
     for (std::size_t i = 0; i < kFeatures; ++i) {
         weights[std::string(feature_name(static_cast<Feature>(i)))] = result.confidence.weights[i];
     }
-    write_json({{"library", options.library},
-                {"scenes", options.settings.scenes},
-                {"examples", result.examples.size()},
-                {"right", result.right()},
-                {"weights", weights}},
-               options.common.json);
+    return {{"examples", result.examples.size()}, {"right", result.right()}, {"weights", weights}};
+}
+
+void run_calibrate(const CalibrateOptions& options) {
+    catch_interrupts();
+    const CalibrationResult result = calibrate_library(options.library, options.settings);
+    write_examples(result.examples, options.examples);
+    Json json = result_json(result);
+    json["library"] = options.library;
+    json["scenes"] = options.settings.scenes;
+    write_json(json, options.common.json);
 }
 
 }  // namespace
@@ -75,12 +66,16 @@ CalibrationResult calibrate_library(const std::string& library,
                                     const CalibrationSettings& settings) {
     ModelLibrary models = load_library(library);
     models.confidence.reset();  // learned anew from the general weights
+    models.merged_confidence.reset();
+    const bool merged = settings.kind == ScanKind::merged;
     CalibrationResult result;
     result.examples = calibration_examples(models, settings, progress_bar());
-    result.confidence = fit_confidence(result.examples, general_confidence(), settings.prior);
-    set_confidence(library, result.confidence);
-    say(fmt::format("{}: confidence learned from {} reports, {} of them right, in {} scenes",
-                    library, result.examples.size(), result.right(), settings.scenes));
+    result.confidence = fit_confidence(
+        result.examples, merged ? merged_confidence() : general_confidence(), settings.prior);
+    set_confidence(library, result.confidence, settings.kind);
+    say(fmt::format("{}: confidence{} learned from {} reports, {} of them right, in {} scenes",
+                    library, merged ? " in merged scans" : "", result.examples.size(),
+                    result.right(), settings.scenes));
     return result;
 }
 
@@ -101,8 +96,9 @@ void add_calibrate(CLI::App& parent) {
                         "write what it learned from as CSV: the features of each report, and "
                         "whether it was right");
     command->add_flag_callback(
-        "--viewpoint-unknown", [options] { options->settings.viewpoint_known = false; },
-        "give the scenes as merged scans, and leave the library as it is: for --examples only");
+        "--viewpoint-unknown", [options] { options->settings.kind = ScanKind::merged; },
+        "learn how merged scans are to be judged, and scans of which nobody knows the viewpoint: "
+        "other things count there");
     add_common(*command, options->common);
     command->callback([options] { run_calibrate(*options); });
 }

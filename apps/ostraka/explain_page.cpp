@@ -140,9 +140,11 @@ void add_confidence(PageContent& page, const ExplainedScan& scan) {
         "Confidence is the probability that a report is right: of objects reported at 0.9, nine in "
         "ten are right. --min-confidence is the least that is reported: a higher one gives fewer "
         "wrong reports and misses more objects.");
-    const std::optional<ConfidenceModel>& own = scan.library.confidence;
+    const auto judged_by = [&](const std::optional<ConfidenceModel>& own) {
+        return own && own->weights == scan.recognition.judge.weights;
+    };
     page.paragraph(
-        own && own->weights == scan.recognition.judge.weights
+        judged_by(scan.library.confidence) || judged_by(scan.library.merged_confidence)
             ? "The weights are this library's own, fitted to its models by `ostraka calibrate`."
             : "The weights are the general ones, fitted to other parts. `ostraka calibrate` fits "
               "them to this library's models, and knows which of these are easily mistaken.");

@@ -77,7 +77,7 @@ class Explain(unittest.TestCase):
         self.assertIs(found["out_of_time"], False)
         for thing in found["objects"]:
             self.assertGreaterEqual(thing["round"], 0)
-            self.assertGreater(thing["features"]["agreement"], 0.5)
+            self.assertGreater(thing["features"]["clearness"], 0.5)
             self.assertEqual(thing["features"]["constant"], 1)
 
     def test_time_limit_ends_the_search(self):

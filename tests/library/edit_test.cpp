@@ -204,6 +204,12 @@ TEST_F(Edit, ConfidenceIsStoredAndVoidAfterAChange) {
     EXPECT_FALSE(load_library(both).confidence.has_value());
     rename_model(both, "zzz", name(0));
     EXPECT_TRUE(load_library(both).confidence.has_value());
+    EXPECT_FALSE(load_library(both).merged_confidence.has_value());
+    const ConfidenceModel single = model;
+    model.weights[1] = -7.0;
+    set_confidence(both, model, ScanKind::merged);
+    EXPECT_EQ(load_library(both).confidence->weights, single.weights);
+    EXPECT_EQ(load_library(both).merged_confidence->weights, model.weights);
     model.weights[2] = 1e9;  // damage
     set_confidence(both, model);
     EXPECT_THROW(load_library(both), FormatError);

@@ -57,9 +57,9 @@ TEST(Recognize, FindsASingleObjectInFrontOfNothing) {
         const Recognition result = recognizer.recognize(scene.cloud, {.min_confidence = 0.5});
         EXPECT_FALSE(result.table_found);
         expect_all(result, scene);
-        // Of the third only faces toward the sensor are seen, which would fit elsewhere, too.
+        // Of the third only faces toward the sensor are seen, but its outline is.
         ASSERT_EQ(result.objects.size(), 1U);
-        EXPECT_EQ(result.objects[0].confidence > RecognitionSettings{}.min_confidence, seed != 2);
+        EXPECT_GT(result.objects[0].confidence, RecognitionSettings{}.min_confidence);
     }
 }
 

@@ -32,7 +32,7 @@ TEST(Verify, TheTruthIsConfidentAndAsVisibleAsItIs) {
             EXPECT_NEAR(v.visible_fraction, object.visible_fraction, 0.25);
             EXPECT_LT(v.inlier_rms, 0.3 * library().settings.sampling);
             EXPECT_LT(v.sunk, 0.01);
-            EXPECT_LT(v.open, 0.2);
+            EXPECT_LT(v.outline.open, 0.2);
         }
     }
 }
@@ -106,7 +106,7 @@ TEST(Verify, AFaceLaidIntoAWallIsNotBelieved) {
         T_wall_plate.linear() = Vec3d(1.0, -1.0, -1.0).asDiagonal();
         const Verified v = verify_at(scan, kPlate, scene.objects[0].T_scene_model * T_wall_plate);
         EXPECT_GT(v.visible_fraction, 0.8);
-        EXPECT_GT(v.open, 0.8);
+        EXPECT_GT(v.outline.open, 0.8);
         EXPECT_LT(v.confidence, 0.1);
         // The wall is too large to be the plate's, though no larger than the largest model.
         const Scan with_backdrop = prepare_scan(scene.cloud, sampling, 1000.0, {});

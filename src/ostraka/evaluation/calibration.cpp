@@ -102,7 +102,7 @@ std::vector<Example> calibration_examples(const ModelLibrary& library,
             report(progress, "calibrate", done++, scenes);
             SceneSettings scene_settings;
             scene_settings.recognition.min_confidence = kLeastConfidence;
-            scene_settings.recognition.viewpoint_known = settings.viewpoint_known;
+            scene_settings.recognition.viewpoint_known = settings.kind == ScanKind::one_viewpoint;
             scene_settings.recognition.only = known_models(library, condition + number, seed);
             const auto some =
                 examples_of(set.load(number), recognizer, judge, scene_settings, settings.max_adi);

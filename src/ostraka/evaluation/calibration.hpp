@@ -19,8 +19,8 @@ struct CalibrationSettings {
     double prior = 8.0;    ///< how much the general weights count: larger, the less is learned
     double max_adi = 0.1;  ///< pose error of a right report, in model diameters
     std::uint64_t seed = 0;
-    bool viewpoint_known = true;  ///< false: the scenes are given as merged scans, from nobody
-                                  ///< knows where (RecognitionSettings::viewpoint_known)
+    ScanKind kind = ScanKind::one_viewpoint;  ///< how the scenes are given; merged: from nobody
+                                              ///< knows where
 };
 
 /// What was reported in a simulated scene.

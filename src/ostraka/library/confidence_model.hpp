@@ -8,19 +8,22 @@
 
 namespace ostraka {
 
-/// What a verified hypothesis is judged by. All are about 0 to 1.
+/// What a verified hypothesis is judged by. All are about 0 to 2.
 enum class Feature : std::uint8_t {
     constant,   ///< 1
-    agreement,  ///< support as a share of what can be judged
-    clearness,  ///< its eighth power: 0.97 is much better than 0.9
+    clearness,  ///< support as a share of what can be judged; to a power that falls with the noise:
+                ///< where there is hardly any, 0.97 is much better than 0.9
     surplus,    ///< what the scan's deviation from the model exceeds the one expected of noise and
                 ///< detail by, as a share of that; at most 2
     turned,     ///< mean of 1 - cosine between the normals of scan and model
-    visible,    ///< share of the silhouette that the scan shows, at most 0.5
+    visible,    ///< logarithm of percent of the silhouette that the scan shows, at most of 50
     area,       ///< logarithm of what supports, as an area in squared diameters
     cells,      ///< logarithm of what supports, as cells of the range map
     grip,       ///< how well what supports holds the model in place; 0: a plane
     open,       ///< share of the outline where the scan's surface goes on
+    level,      ///< share of the silhouette's outline where the scan is as high beyond
+    folded,     ///< share of it where the scan's surface bends away and goes on
+    ended,      ///< logarithm of the cells of outline where the scan ends, too
     sunk,       ///< share that would be below the table
     solid,      ///< logarithm of what contradicts in one piece, as cells of the range map
     rival,      ///< how well the best other model explains the same, as a share; at most 1
@@ -35,6 +38,12 @@ std::string_view feature_name(Feature feature);
 struct ConfidenceModel {
     Features weights{};
     double confidence(const Features& features) const;
+};
+
+/// What is known of free space decides what counts.
+enum class ScanKind : std::uint8_t {
+    one_viewpoint,
+    merged  ///< of several viewpoints, or from nobody knows where
 };
 
 /// Fitted to simulated scenes of shipped and other parts; one that is fitted to a library's own

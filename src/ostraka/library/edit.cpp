@@ -161,10 +161,10 @@ void rename_model(const fs::path& library, const std::string& from, const std::s
     transaction.commit();
 }
 
-void set_confidence(const fs::path& library, const ConfidenceModel& confidence) {
+void set_confidence(const fs::path& library, const ConfidenceModel& confidence, ScanKind kind) {
     LibraryStore store = open_for_editing(library);
     Transaction transaction(store.database());
-    store.put_confidence(confidence);
+    store.put_confidence(confidence, kind);
     transaction.commit();
 }
 

@@ -39,7 +39,8 @@ void rename_model(const std::filesystem::path& library, const std::string& from,
 
 /// Stores how a library's own models are to be judged (calibrate_confidence()). What changes the
 /// models later makes it void. @throws as remove_models().
-void set_confidence(const std::filesystem::path& library, const ConfidenceModel& confidence);
+void set_confidence(const std::filesystem::path& library, const ConfidenceModel& confidence,
+                    ScanKind kind = ScanKind::one_viewpoint);
 
 /// Builds a graph of all models' keypoint rows and stores it, so that scans are matched with the
 /// nearest rows only (keypoint_index.hpp): faster from some dozens of models on, and approximate. A

@@ -68,7 +68,7 @@ class LibraryStore {
     void load_graph(ModelLibrary& library);
     bool has_confidence();
     /// Stores what was fitted to the models that are in the file now.
-    void put_confidence(const ConfidenceModel& confidence);
+    void put_confidence(const ConfidenceModel& confidence, ScanKind kind);
     /// Leaves the library without where the file has none, models have changed since, or it was
     /// fitted to other features than today's. @throws FormatError if it is damaged.
     void load_confidence(ModelLibrary& library);
@@ -83,6 +83,7 @@ class LibraryStore {
         : database_(std::move(database)), named_(std::move(named)) {}
     std::vector<std::pair<std::string, std::string>> checksums();
     std::string models_digest();
+    std::optional<ConfidenceModel> stored_confidence(ScanKind kind);
     void put_settings();
     void load_settings();
 

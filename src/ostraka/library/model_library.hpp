@@ -86,6 +86,7 @@ struct ModelLibrary {
     NeighborGraph keypoint_graph;  ///< of all_keypoint_rows(); empty: exact search
     std::vector<float> bags;       ///< entries x codebook.size(): its words in each entry, sum 1
     std::optional<ConfidenceModel> confidence;  ///< fitted to these models; none: the general one
+    std::optional<ConfidenceModel> merged_confidence;  ///< the same for merged scans
 };
 
 /// The keypoint rows of all models, one after another in their order.

@@ -8,8 +8,10 @@ namespace ostraka {
 namespace {
 
 constexpr std::size_t kMinSupport = 40;  // cells
+constexpr double kHardlyVisible = 0.01;
 constexpr double kEnoughVisible = 0.5;
 constexpr double kMostSurplus = 2.0;
+constexpr double kLeastNoise = 0.1;  // sampling distances
 
 }  // namespace
 
@@ -22,20 +24,23 @@ Features features_of(const Verified& v) {
     const auto set = [&](Feature feature, double value) {
         features[static_cast<std::size_t>(feature)] = value;
     };
-    const double agreement = v.agreement();
     const double cells = static_cast<double>(v.support) / static_cast<double>(kMinSupport);
     set(Feature::constant, 1.0);
-    set(Feature::agreement, agreement);
-    set(Feature::clearness, std::pow(agreement, 8.0));
+    const double noise = std::clamp(v.noise, kLeastNoise, 1.0);
+    set(Feature::clearness, std::pow(v.agreement(), std::pow(noise, -1.5)));
     // Nothing is expected of what has no support.
     const double surplus = v.expected_rms > 0.0 ? v.inlier_rms / v.expected_rms - 1.0 : 0.0;
     set(Feature::surplus, std::clamp(surplus, 0.0, kMostSurplus));
     set(Feature::turned, v.turned);
-    set(Feature::visible, std::min(v.visible_fraction, kEnoughVisible));
+    set(Feature::visible,
+        std::log10(100.0 * std::clamp(v.visible_fraction, kHardlyVisible, kEnoughVisible)));
     set(Feature::area, std::log10(1.0 + 100.0 * v.area));
     set(Feature::cells, std::log10(1.0 + cells));
     set(Feature::grip, std::sqrt(v.grip));
-    set(Feature::open, v.open);
+    set(Feature::open, v.outline.open);
+    set(Feature::level, v.outline.level);
+    set(Feature::folded, v.outline.folded);
+    set(Feature::ended, std::log10(1.0 + v.outline.ended));
     set(Feature::sunk, v.sunk);
     set(Feature::solid, std::log10(1.0 + static_cast<double>(v.solid)));
     return features;

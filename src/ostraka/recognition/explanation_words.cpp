@@ -20,16 +20,18 @@ struct FeatureFacts {
     double typical;
 };
 // Medians of the right reports that the general weights were learned from.
-constexpr std::array<FeatureFacts, 13> kFacts = {{{"constant", "", 1.0},
-                                                  {"agreement", "agreement", 0.997},
-                                                  {"clearness", "agreement", 0.973},
+constexpr std::array<FeatureFacts, 15> kFacts = {{{"constant", "", 1.0},
+                                                  {"clearness", "agreement", 0.982},
                                                   {"surplus", "fit", 0.0},
                                                   {"turned", "fit", 0.03},
-                                                  {"visible", "visible", 0.5},
+                                                  {"visible", "visible", 1.7},
                                                   {"area", "size", 1.365},
-                                                  {"cells", "size", 1.67},
-                                                  {"grip", "grip", 0.617},
-                                                  {"open", "outline", 0.0},
+                                                  {"cells", "size", 1.68},
+                                                  {"grip", "grip", 0.614},
+                                                  {"open", "outline", 0.011},
+                                                  {"level", "outline", 0.014},
+                                                  {"folded", "outline", 0.0},
+                                                  {"ended", "outline", 1.94},
                                                   {"sunk", "sunk", 0.0},
                                                   {"solid", "contradiction", 0.0},
                                                   {"rival", "rival", 0.0}}};
@@ -100,6 +102,29 @@ std::string size_words(const Verified& v, bool against) {
                    : fmt::format("much of it is seen: {} cells of the range map", v.support);
 }
 
+// Of what is against it, that which is rarest of right ones.
+std::string outline_words(const OutlineEvidence& outline, bool against) {
+    if (!against) return "the scan's surface ends where the model ends";
+    constexpr double kSome = 0.03;
+    if (outline.open >= kSome) {
+        return fmt::format(
+            "along {} of its outline the scan goes on as one smooth surface: it may be a piece of "
+            "something larger",
+            percent(outline.open));
+    }
+    if (outline.folded >= kSome) {
+        return fmt::format(
+            "along {} of its outline the scan's surface bends away and goes on: a face that the "
+            "model lacks",
+            percent(outline.folded));
+    }
+    if (outline.level >= kSome) {
+        return fmt::format("along {} of its outline something as high is beside it",
+                           percent(outline.level));
+    }
+    return "its outline is hardly seen: what it agrees with may be part of something else";
+}
+
 // Whether the numbers are worse than usual: weights that were fitted may say the opposite of what
 // a person would, and words that contradict themselves help nobody.
 bool worse_than_usual(std::string_view topic, const Explanation& one) {
@@ -108,12 +133,15 @@ bool worse_than_usual(std::string_view topic, const Explanation& one) {
     };
     const auto lower = [&](Feature f) { return value(f) < typical_value(f); };
     const auto higher = [&](Feature f) { return value(f) > typical_value(f); };
-    if (topic == "agreement") return lower(Feature::agreement);
+    if (topic == "agreement") return lower(Feature::clearness);
     if (topic == "fit") return higher(Feature::surplus);
     if (topic == "visible") return lower(Feature::visible);
     if (topic == "size") return lower(Feature::cells) || lower(Feature::area);
     if (topic == "grip") return lower(Feature::grip);
-    if (topic == "outline") return higher(Feature::open);
+    if (topic == "outline") {
+        return higher(Feature::open) || higher(Feature::level) || higher(Feature::folded) ||
+               lower(Feature::ended);
+    }
     if (topic == "sunk") return higher(Feature::sunk);
     if (topic == "contradiction") return higher(Feature::solid);
     if (topic == "rival") return higher(Feature::rival);
@@ -134,13 +162,7 @@ std::string words_for(std::string_view topic, const Explanation& one, bool again
         return against ? "what is seen is nearly flat or round and would fit elsewhere, too"
                        : "what is seen holds it in place in all directions";
     }
-    if (topic == "outline") {
-        return against ? fmt::format(
-                             "along {} of its outline the scan goes on as one smooth "
-                             "surface: it may be a piece of something larger",
-                             percent(v.open))
-                       : "the scan's surface ends where the model ends";
-    }
+    if (topic == "outline") return outline_words(v.outline, against);
     if (topic == "sunk") {
         return against ? fmt::format("{} of it would be below the table", percent(v.sunk))
                        : "nothing of it is below the table";

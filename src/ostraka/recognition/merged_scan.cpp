@@ -154,6 +154,7 @@ Verified verify_merged(const Scan& scan, const ModelProbe& probe, const Hypothes
     const auto support = static_cast<double>(result.support);
     result.inlier_rms = std::sqrt(squares / support);
     result.expected_rms = expected_deviation(scan, probe);
+    result.noise = result.expected_rms / scan.sampling;
     result.turned /= support;
     const Eigen::SelfAdjointEigenSolver<Mat3d> scatter(normals / support, Eigen::EigenvaluesOnly);
     result.grip = 3.0 * std::max(0.0, scatter.eigenvalues()(0));

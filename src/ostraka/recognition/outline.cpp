@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/recognition/outline.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ostraka {
@@ -11,6 +13,9 @@ constexpr int kInward = 2;               // cells from the outline into the mode
 constexpr int kOutward = 3;              // and out of it, where normals are those of one side only
 constexpr float kContinues = 0.9F;       // cosine between normals on both sides of a smooth surface
 constexpr std::size_t kMinOutline = 12;  // cells of outline; fewer say nothing
+constexpr float kFoldSlack = 1.5F;       // sampling distances from a face's plane to the rim, and
+constexpr float kFoldReach = 8.0F;       // from a place on the face, if it begins at the rim
+constexpr int kAround = 3;               // cells around one that give the outline's direction
 
 // The verdicts by column u and row v of the range map.
 class VerdictImage {
@@ -36,6 +41,11 @@ class VerdictImage {
         const CellVerdict verdict = at(u, v);
         return verdict == CellVerdict::outside || verdict == CellVerdict::hidden;
     }
+    // Whether the model's surface isn't where the scan's is.
+    bool lacks(int u, int v) const {
+        const CellVerdict verdict = at(u, v);
+        return beyond(u, v) || verdict == CellVerdict::violation;
+    }
     std::uint32_t cell(int u, int v) const {
         if (u < 0 || v < 0 || u >= width_ || v >= height_) return kNoIndex;
         return static_cast<std::uint32_t>(v * width_ + u);
@@ -52,47 +62,127 @@ class VerdictImage {
     std::span<const CellVerdict> verdicts_;
 };
 
+constexpr std::array<std::pair<int, int>, 4> kSides = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+
+// A place where the supported part ends, in the direction of one of the four sides of a cell.
+struct Brink {
+    std::uint32_t inside = kNoIndex;   // kInward cells into the model
+    std::uint32_t rim = kNoIndex;      // its last cell
+    std::uint32_t outside = kNoIndex;  // kOutward cells from there
+};
+
+enum class Beyond : std::uint8_t { unknown, open, nearer, level, folded, ended };
+
 // Whether a supported cell and one beyond the outline show one smooth surface.
-bool continues(const Scan& scan, const VerdictImage& image, std::uint32_t inside,
-               std::uint32_t outside) {
-    if (inside == kNoIndex || outside == kNoIndex) return false;
-    const std::uint32_t a = scan.ranges[inside].point;
-    const std::uint32_t b = scan.ranges[outside].point;
-    if (a == kNoIndex || b == kNoIndex || !scan.ranges[outside].measured()) return false;
+bool continues(const Scan& scan, const VerdictImage& image, const Brink& brink) {
+    const std::uint32_t a = scan.ranges[brink.inside].point;
+    const std::uint32_t b = scan.ranges[brink.outside].point;
+    if (b == kNoIndex) return false;
     // A cell may have borrowed its point from the rim of the model.
     const std::uint32_t own = scan.ranges.cell_of(scan.cloud.points[b]);
-    if (own == kNoIndex || !image.beyond(image.u(own), image.v(own))) return false;
+    if (own == kNoIndex || !image.lacks(image.u(own), image.v(own))) return false;
     const Vec3f& normal = scan.cloud.normals[a];
     if (normal.dot(scan.cloud.normals[b]) < kContinues) return false;
     const float off = normal.dot(scan.cloud.points[b] - scan.cloud.points[a]);
     return std::abs(off) < static_cast<float>(scan.sampling);
 }
 
-}  // namespace
+Vec3f seen_at(const RangeMap& ranges, std::uint32_t cell) {
+    return ranges.viewpoint() + ranges[cell].near * ranges.direction(cell).cast<float>();
+}
 
-double open_share(const Scan& scan, std::span<const std::uint32_t> window,
-                  std::span<const CellVerdict> verdicts) {
-    if (window.empty()) return 0.0;
-    const VerdictImage image(scan.ranges, window, verdicts);
-    std::size_t outline = 0;
-    std::size_t open = 0;
-    for (std::size_t i = 0; i < window.size(); ++i) {
-        if (verdicts[i] != CellVerdict::support) continue;
-        const int u = image.u(window[i]);
-        const int v = image.v(window[i]);
-        for (const auto& [du, dv] :
-             {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
-            if (!image.beyond(u + du, v + dv)) continue;
-            if (!image.beyond(u + kOutward * du, v + kOutward * dv)) continue;
-            const int inner_u = u - kInward * du;
-            const int inner_v = v - kInward * dv;
-            if (image.at(inner_u, inner_v) != CellVerdict::support) continue;
-            ++outline;
-            const std::uint32_t outside = image.cell(u + kOutward * du, v + kOutward * dv);
-            if (continues(scan, image, image.cell(inner_u, inner_v), outside)) ++open;
+Beyond beyond(const Scan& scan, const VerdictImage& image, const Brink& brink) {
+    if (brink.inside == kNoIndex || brink.outside == kNoIndex) return Beyond::unknown;
+    const std::uint32_t a = scan.ranges[brink.inside].point;
+    if (a == kNoIndex) return Beyond::unknown;
+    // Nothing behind it, or too far away, or in its shadow: had the surface gone on, it were seen.
+    if (!scan.ranges[brink.outside].measured()) return Beyond::ended;
+    if (continues(scan, image, brink)) return Beyond::open;
+    const auto sampling = static_cast<float>(scan.sampling);
+    const Vec3f outside = seen_at(scan.ranges, brink.outside);
+    const float above = scan.cloud.normals[a].dot(outside - scan.cloud.points[a]);
+    if (above > sampling) return Beyond::nearer;
+    if (above > -sampling) return Beyond::level;
+    const std::uint32_t b = scan.ranges[brink.outside].point;
+    if (b == kNoIndex) return Beyond::ended;
+    // A face that begins at the rim: its plane goes through it.
+    const Vec3f back = seen_at(scan.ranges, brink.rim) - outside;
+    const bool begins_there = std::abs(scan.cloud.normals[b].dot(back)) < kFoldSlack * sampling;
+    return begins_there && back.norm() < kFoldReach * sampling ? Beyond::folded : Beyond::ended;
+}
+
+// Unit, out of the silhouette, in columns and rows; zero where it is all around.
+Eigen::Vector2d outward(const VerdictImage& image, int u, int v) {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (int dv = -kAround; dv <= kAround; ++dv) {
+        for (int du = -kAround; du <= kAround; ++du) {
+            if (image.at(u + du, v + dv) == CellVerdict::outside) sum += Eigen::Vector2d(du, dv);
         }
     }
-    return outline < kMinOutline ? 0.0 : static_cast<double>(open) / static_cast<double>(outline);
+    return sum.isZero() ? sum : Eigen::Vector2d(sum.normalized());
+}
+
+struct OutlineSums {
+    std::size_t outline = 0;     // also against what hides it
+    std::size_t open = 0;        // of these
+    std::size_t silhouette = 0;  // where something is known of it
+    std::size_t level = 0;       // of these
+    std::size_t folded = 0;      // of these
+    Eigen::Matrix2d ended = Eigen::Matrix2d::Zero();
+};
+
+void judge_brink(const Scan& scan, const VerdictImage& image, int u, int v,
+                 const std::pair<int, int>& side, OutlineSums& sums) {
+    const auto& [du, dv] = side;
+    const auto lacks = [&](int steps) { return image.lacks(u + steps * du, v + steps * dv); };
+    const auto ends = [&](int steps) { return image.beyond(u + steps * du, v + steps * dv); };
+    const auto clear = [&](int steps) {
+        return image.at(u + steps * du, v + steps * dv) == CellVerdict::outside;
+    };
+    const bool edge = image.at(u + du, v + dv) == CellVerdict::unsure;
+    if ((!lacks(1) && !edge) || !lacks(kOutward)) return;
+    const int inner_u = u - kInward * du;
+    const int inner_v = v - kInward * dv;
+    if (image.at(inner_u, inner_v) != CellVerdict::support) return;
+    const Beyond found = beyond(scan, image,
+                                {image.cell(inner_u, inner_v), image.cell(u, v),
+                                 image.cell(u + kOutward * du, v + kOutward * dv)});
+    // Inside the silhouette only what goes on tells: where the scan isn't what a side of the model
+    // would be, but what is beside it.
+    if (found == Beyond::open || (ends(1) && ends(kOutward))) ++sums.outline;
+    if (found == Beyond::open) ++sums.open;
+    if (found == Beyond::unknown || !clear(1) || !clear(kOutward)) return;
+    ++sums.silhouette;
+    if (found == Beyond::level) ++sums.level;
+    if (found == Beyond::folded) ++sums.folded;
+    if (found != Beyond::ended) return;
+    const Eigen::Vector2d direction = outward(image, u, v);
+    sums.ended += direction * direction.transpose();
+}
+
+double share(std::size_t part, std::size_t whole, std::size_t least) {
+    return whole < least ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+OutlineEvidence judge_outline(const Scan& scan, std::span<const std::uint32_t> window,
+                              std::span<const CellVerdict> verdicts) {
+    if (window.empty()) return {};
+    const VerdictImage image(scan.ranges, window, verdicts);
+    OutlineSums sums;
+    for (std::size_t i = 0; i < window.size(); ++i) {
+        if (verdicts[i] != CellVerdict::support) continue;
+        for (const auto& side : kSides) {
+            judge_brink(scan, image, image.u(window[i]), image.v(window[i]), side, sums);
+        }
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions(sums.ended,
+                                                                    Eigen::EigenvaluesOnly);
+    return {.open = share(sums.open, sums.outline, kMinOutline),
+            .level = share(sums.level, sums.silhouette, 1),
+            .folded = share(sums.folded, sums.silhouette, 1),
+            .ended = 2.0 * std::max(0.0, directions.eigenvalues()(0))};
 }
 
 std::size_t solid_contradiction(const RangeMap& ranges, std::span<const std::uint32_t> window,

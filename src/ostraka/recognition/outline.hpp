@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The verdicts on a placed model as a picture: where they end, and where they contradict.
 // Where the visible part of a placed model ends, the scan's surface should end, too: at a depth
-// edge or a crease. A flat face fits into any wall and a bulge into any ball, but those go on.
+// edge. A flat face fits into any wall and a bulge into any ball, but those go on; and into any
+// tray, but there the outline is nowhere seen.
 // Clutter in the sense of Aldoma, Tombari, Di Stefano, Vincze. A Global Hypotheses Verification
 // Method for 3D Object Recognition. ECCV 2012; measured here along the outline only.
 #pragma once
@@ -12,13 +13,25 @@
 
 namespace ostraka {
 
-/// The share of the supported part's outline, against cells that are outside or hidden, where the
-/// scan shows one smooth surface on both sides: near 0 for an object, near 1 for a chance fit.
+/// What the scan shows where the visible part of a placed model ends. All but `open` are of its
+/// silhouette: against cells that the model doesn't cover at all.
+struct OutlineEvidence {
+    double open = 0.0;   ///< share of the outline, also against what hides or contradicts it, where
+                         ///< the scan shows one smooth surface on both sides: near 0 for an
+                         ///< object, near 1 for a chance fit; 0 if it is too short to judge
+    double level = 0.0;  ///< share where the scan is as high beyond, but it isn't that surface
+    double folded = 0.0;  ///< share where the scan's surface bends away and goes on: a face that
+                          ///< the model lacks (convex: most often of the same object; S. C. Stein
+                          ///< et al., Object Partitioning using Local Convexity, CVPR 2014)
+    double ended = 0.0;   ///< cells of outline where the scan ends, too, and something farther or
+                          ///< nothing is seen; of the image's two directions in that which has
+                          ///< fewer, and twice that: a stripe of a wall ends only above and below
+};
+
 /// @param window    cells of a rectangle of the range map, ascending (RangeMap::cells_around()).
 /// @param verdicts  one for each of them.
-/// @return 0 if the outline is too short to judge.
-double open_share(const Scan& scan, std::span<const std::uint32_t> window,
-                  std::span<const CellVerdict> verdicts);
+OutlineEvidence judge_outline(const Scan& scan, std::span<const std::uint32_t> window,
+                              std::span<const CellVerdict> verdicts);
 
 /// Cells that contradict, in violation or backdrop, as do all eight around them. Where the model is
 /// right, noise and edges contradict in specks and lines; where it is another that looks alike,

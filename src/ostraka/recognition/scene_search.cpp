@@ -41,9 +41,10 @@ void mark_points(const Verified& object, const ModelProbe& probe, Scan& scan) {
     }
 }
 
-// A library's own weights were learned from scans of one viewpoint.
 const ConfidenceModel& model_of(const ModelLibrary& library, const Scan& scan) {
-    if (scan.merged) return merged_confidence();
+    if (scan.merged) {
+        return library.merged_confidence ? *library.merged_confidence : merged_confidence();
+    }
     return library.confidence ? *library.confidence : general_confidence();
 }
 

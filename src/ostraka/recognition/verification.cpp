@@ -137,11 +137,12 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
     }
     add_shares(sums, result);
     result.expected_rms = expected_deviation(scan, probe);
+    result.noise = result.expected_rms / scan.sampling;
     const double cell_area = scan.cell * scan.cell;
     result.area =
         static_cast<double>(result.support) * cell_area / (shape.diameter * shape.diameter);
     result.solid = solid_contradiction(scan.ranges, window, verdicts);
-    result.open = open_share(scan, window, verdicts);
+    result.outline = judge_outline(scan, window, verdicts);
     if (detail != nullptr) *detail = {window, std::move(verdicts)};
     return result;
 }

@@ -22,10 +22,11 @@ struct Verified {
     std::size_t unsure = 0;      ///< of these: nothing can be said
     std::size_t solid = 0;       ///< of violation and backdrop: solid_contradiction()
     double sunk = 0.0;           ///< share of the silhouette that would be below the table
-    double open = 0.0;           ///< open_share(): where the model ends, the scan's surface doesn't
+    OutlineEvidence outline;     ///< whether the scan's surface ends where the model does
     double inlier_rms = 0.0;     ///< of the distances of supporting cells, along the normal; scan's
                                  ///< unit
     double expected_rms = 0.0;   ///< of the same: what noise and the model's detail account for
+    double noise = 0.0;          ///< expected_rms in sampling distances
     double turned = 0.0;         ///< mean of 1 - cosine between the normals of supporting cells
     double grip = 0.0;           ///< how well the support holds the model in place: smallest
                                  ///< eigenvalue of its normals' scatter, times 3; 0: a plane

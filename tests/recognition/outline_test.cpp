@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ostraka/recognition/outline.hpp"
+
+#include "ostraka/recognition/confidence.hpp"
+#include "recognition/recognition_testing.hpp"
+
+namespace ostraka {
+namespace {
+
+using namespace recognition_testing;
+
+constexpr float kLength = 90.0F;  // of the plate's flat underside, at z = 0 and facing down
+constexpr float kWidth = 60.0F;
+
+// The plate verified in a scan of `mesh` from below, as if the mesh were the plate.
+class FromBelow {
+  public:
+    explicit FromBelow(const TriangleMesh& mesh, const Vec3d& eye = Vec3d(45, 30, -400))
+        : scene_(scan_of(mesh, eye, 0.1)),
+          scan_(prepared(scene_)),
+          verified_(verify(scan_, probe(kPlate),
+                           {.model = kPlate, .T_scene_model = scene_.objects[0].T_scene_model},
+                           tolerance())) {}
+    const Verified& verified() const { return verified_; }
+    const OutlineEvidence& outline() const { return verified_.outline; }
+    double cell() const { return scan_.cell; }
+    double confidence() const { return general_confidence().confidence(features_of(verified_)); }
+
+  private:
+    SimulatedScene scene_;
+    Scan scan_;
+    Verified verified_;
+};
+
+// The plate's underside is the floor of a tray, as seen from below.
+TriangleMesh tray() {
+    TriangleMesh mesh;
+    testing::add_box(mesh, Vec3f(-5, -5, 0), Vec3f(kLength + 5, kWidth + 5, 8));
+    testing::add_box(mesh, Vec3f(-5, -5, -20), Vec3f(0, kWidth + 5, 0));
+    testing::add_box(mesh, Vec3f(kLength, -5, -20), Vec3f(kLength + 5, kWidth + 5, 0));
+    testing::add_box(mesh, Vec3f(-5, -5, -20), Vec3f(kLength + 5, 0, 0));
+    testing::add_box(mesh, Vec3f(-5, kWidth, -20), Vec3f(kLength + 5, kWidth + 5, 0));
+    return mesh;
+}
+
+// The plate's underside is the floor of a channel without ends.
+TriangleMesh channel() {
+    TriangleMesh mesh;
+    testing::add_box(mesh, Vec3f(0, -5, 0), Vec3f(kLength, kWidth + 5, 8));
+    testing::add_box(mesh, Vec3f(0, -5, -20), Vec3f(kLength, 0, 0));
+    testing::add_box(mesh, Vec3f(0, kWidth, -20), Vec3f(kLength, kWidth + 5, 0));
+    return mesh;
+}
+
+// The plate's underside is the top of a truncated pyramid, with walls of 45 degrees.
+TriangleMesh pyramid() {
+    TriangleMesh mesh;
+    testing::add_box(mesh, Vec3f(0, 0, 0), Vec3f(kLength, kWidth, 30));
+    for (Vec3f& vertex : mesh.vertices) {
+        if (vertex.z() == 0.0F) continue;
+        vertex.x() += vertex.x() > 0.0F ? vertex.z() : -vertex.z();
+        vertex.y() += vertex.y() > 0.0F ? vertex.z() : -vertex.z();
+    }
+    return mesh;
+}
+
+// The plate's underside is a piece of a larger one, though one too small for a table.
+TriangleMesh larger() {
+    TriangleMesh mesh;
+    testing::add_box(mesh, Vec3f(0, 0, 0), Vec3f(kLength + 10, kWidth + 10, 8));
+    return mesh;
+}
+
+TEST(Outline, OfWhatStandsAloneIsConfirmedAllAround) {
+    const FromBelow test(testing::plate_model());
+    EXPECT_LT(test.outline().open, 0.05);  // at corners
+    EXPECT_EQ(test.outline().level, 0.0);
+    EXPECT_EQ(test.outline().folded, 0.0);
+    EXPECT_GT(test.confidence(), 0.9);
+    // The two short sides are the direction with fewer cells. A side at a slant in the image has
+    // up to the root of two as many.
+    const double cells = 4.0 * kWidth / test.cell();
+    EXPECT_GT(test.outline().ended, 0.8 * cells);
+    EXPECT_LT(test.outline().ended, 1.5 * cells);
+}
+
+TEST(Outline, OfTheFloorOfATrayIsNowhereConfirmed) {
+    const FromBelow test(tray());
+    EXPECT_GT(test.verified().agreement(), 0.95);  // all that is seen of it fits
+    EXPECT_LT(test.outline().ended, 2.0);
+    EXPECT_LT(test.confidence(), FromBelow(testing::plate_model()).confidence());
+}
+
+TEST(Outline, OfTheFloorOfAChannelIsConfirmedInOneDirectionOnly) {
+    const FromBelow test(channel());
+    EXPECT_LT(test.outline().ended, 0.1 * FromBelow(testing::plate_model()).outline().ended);
+}
+
+TEST(Outline, WhereTheSurfaceBendsAwayAFaceIsMissing) {
+    const FromBelow test(pyramid());
+    // Beside a crease normals are of both sides: some of it seems level.
+    EXPECT_GT(test.outline().folded, 0.5);
+    EXPECT_GT(test.outline().folded + test.outline().level, 0.95);
+    EXPECT_LT(test.outline().open, 0.1);
+    EXPECT_LT(test.outline().ended, 0.1 * FromBelow(testing::plate_model()).outline().ended);
+    EXPECT_LT(test.confidence(), 0.5);
+}
+
+TEST(Outline, WhereTheSurfaceGoesOnItIsOpen) {
+    const FromBelow test(larger());
+    // Two of four sides: one long, one short.
+    EXPECT_NEAR(test.outline().open, 0.5, 0.1);
+    EXPECT_LT(test.outline().folded, 0.05);
+    EXPECT_LT(test.confidence(), 0.5);
+}
+
+// The plate's end face would be seen where the scan's bar goes on: inside the silhouette.
+TEST(Outline, WhereTheSurfaceGoesOnPastAVisibleEndItIsOpen) {
+    TriangleMesh longer;
+    testing::add_box(longer, Vec3f(-15, 0, 0), Vec3f(kLength, kWidth, 8));
+    const Vec3d eye(-300, 30, -300);
+    EXPECT_LT(FromBelow(testing::plate_model(), eye).outline().open, 0.05);
+    EXPECT_GT(FromBelow(longer, eye).outline().open, 0.1);
+}
+
+}  // namespace
+}  // namespace ostraka
