@@ -118,5 +118,22 @@ TEST(ForLibrary, UnknownObjectsStayInTheScanButNotInTheTruth) {
     EXPECT_THROW(for_library(simulated_set(library(), recipe, 3), library(), fewer), InvalidInput);
 }
 
+// All features alike and all right: the prior on the average logit is all that holds, as if the
+// constant were the only feature.
+TEST(FitConfidence, FeaturesThatDoNotVaryDoNotMoveTheAverageTogether) {
+    constexpr double kPrior = 8.0;
+    constexpr int kCount = 100;
+    Example example{.right = true};
+    example.features.fill(1.0);
+    const std::vector<Example> examples(kCount, example);
+    double logit = 0.0;  // kCount (1 - p) = kPrior logit, by bisection
+    for (double step = 10.0; step > 1e-12; step /= 2.0) {
+        const double p = 1.0 / (1.0 + std::exp(-(logit + step)));
+        if (kCount * (1.0 - p) > kPrior * (logit + step)) logit += step;
+    }
+    const double p = fit_confidence(examples, {}, kPrior).confidence(example.features);
+    EXPECT_NEAR(std::log(p / (1.0 - p)), logit, 1e-6);
+}
+
 }  // namespace
 }  // namespace ostraka

@@ -82,6 +82,17 @@ std::vector<Example> examples_of(const TestScene& scene, const Recognizer& recog
     return examples;
 }
 
+// 0 of the constant.
+Vector mean_features(std::span<const Example> examples) {
+    Vector sum = Vector::Zero();
+    for (const Example& example : examples) {
+        sum += Eigen::Map<const Vector>(example.features.data());
+    }
+    if (!examples.empty()) sum /= static_cast<double>(examples.size());
+    sum(0) = 0.0;
+    return sum;
+}
+
 }  // namespace
 
 std::vector<Example> calibration_examples(const ModelLibrary& library,
@@ -115,13 +126,17 @@ std::vector<Example> calibration_examples(const ModelLibrary& library,
 
 ConfidenceModel fit_confidence(std::span<const Example> examples, const ConfidenceModel& from,
                                double prior) {
-    const Vector mean = Eigen::Map<const Vector>(from.weights.data());
+    // Most features of reports are far from 0 and nearly the same: without this their weights would
+    // move the constant, together much farther than the prior lets it move.
+    const Vector middle = mean_features(examples);
+    Vector mean = Eigen::Map<const Vector>(from.weights.data());
+    mean(0) += mean.dot(middle);
     Vector weights = mean;
     for (int step = 0; step < kSteps; ++step) {
         Vector slope = -prior * (weights - mean);
         Matrix curvature = prior * Matrix::Identity();
         for (const Example& example : examples) {
-            const Vector x = Eigen::Map<const Vector>(example.features.data());
+            const Vector x = Eigen::Map<const Vector>(example.features.data()) - middle;
             const double logit = std::clamp(weights.dot(x), -kFarOff, kFarOff);
             const double p = 1.0 / (1.0 + std::exp(-logit));
             slope += ((example.right ? 1.0 : 0.0) - p) * x;
@@ -131,6 +146,7 @@ ConfidenceModel fit_confidence(std::span<const Example> examples, const Confiden
         weights += move;
         if (move.cwiseAbs().maxCoeff() < 1e-10) break;
     }
+    weights(0) -= weights.dot(middle);
     ConfidenceModel model;
     Eigen::Map<Vector>(model.weights.data()) = weights;
     return model;

@@ -36,7 +36,8 @@ std::vector<Example> calibration_examples(const ModelLibrary& library,
                                           const Progress& progress = {});
 
 /// The logistic function that fits the examples best, held to `from` by a Gaussian prior of
-/// precision `prior` on each weight. The same bytes on every run.
+/// precision `prior` on each weight and on the logit of what is average. The same bytes on every
+/// run.
 ConfidenceModel fit_confidence(std::span<const Example> examples, const ConfidenceModel& from,
                                double prior);
 
