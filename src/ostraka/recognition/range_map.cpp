@@ -45,7 +45,9 @@ RangeMap::RangeMap(const PointCloud& raw, std::span<const float> wall_extents,
     fill(raw, ranges, wall_extents);
     place_points(resampled);
     fill_gaps();
-    find_shadows();
+    // The angle of a cell in the map's middle.
+    const CellRows rows{width_, height_, 2.0 / double{cells_per_radian_}};
+    mark_shadows(cells_, rows, measure_baselines(cells_, rows));
     look_around(resampled);
 }
 
@@ -132,37 +134,6 @@ void RangeMap::place_points(const PointCloud& resampled) {
             cell.point == kNoIndex || range < (resampled.points[cell.point] - viewpoint_).norm();
         if (closer) cell.point = i;
     }
-}
-
-// Along a row or a column, there and back. A sensor of baseline b doesn't see surface at range r
-// that is less than b (1 / s - 1 / r) radians beside something at range s; b is kParallax s.
-void RangeMap::find_shadows(std::uint32_t start, std::uint32_t step, std::uint32_t count) {
-    const double angle = 2.0 / double{cells_per_radian_};  // of a cell, in the map's middle
-    for (const bool back : {false, true}) {
-        float last = 0.0F;
-        int since = 0;
-        for (std::uint32_t i = 0; i < count; ++i) {
-            RangeCell& cell = cells_[start + step * (back ? count - 1 - i : i)];
-            if (cell.measured()) {
-                last = cell.near;
-                since = 0;
-                continue;
-            }
-            const double left = 1.0 - ++since * angle / kParallax;
-            if (last > 0.0F && left > 0.0) {
-                cell.shadow = std::min(cell.shadow, static_cast<float>(double{last} / left));
-            }
-        }
-    }
-}
-
-void RangeMap::find_shadows() {
-    parallel_for(height_, [&](std::size_t v) {
-        find_shadows(static_cast<std::uint32_t>(v) * width_, 1, width_);
-    });
-    parallel_for(width_, [&](std::size_t u) {
-        find_shadows(static_cast<std::uint32_t>(u), width_, height_);
-    });
 }
 
 // What a cell shows may as well be seen a cell beside it, as rays and points don't coincide.

@@ -4,32 +4,13 @@
 // sphere.
 #pragma once
 
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "ostraka/cloud/point_cloud.hpp"
+#include "ostraka/recognition/range_shadows.hpp"
 
 namespace ostraka {
-
-/// Tangent of the angle between a sensor's camera and its light or second camera, as seen from what
-/// is nearest: few have more (docs/sensors.md).
-inline constexpr double kParallax = 0.25;
-
-/// One direction's measurement.
-struct RangeCell {
-    float near = 0.0F;  ///< least distance from the viewpoint to a point; 0: nothing measured
-    float far = 0.0F;   ///< greatest distance of such a point
-    float nearest_around = 0.0F;  ///< least `near` of this and the eight cells around it; 0: none
-    std::uint32_t point =
-        kNoIndex;       ///< a point of the resampled cloud in or beside this cell, or kNoIndex
-    float wall = 0.0F;  ///< extent of the wall or table that was seen here; 0: of none
-    float shadow = std::numeric_limits<float>::infinity();
-    ///< of a cell where nothing was measured: distance from which on surface may be in the shadow
-    ///< that something nearer, in its row or column, casts for the sensor's light or second camera
-    bool steady = false;  ///< normals of this and the cells around it agree: they can be relied on
-    bool measured() const { return near > 0.0F; }
-};
 
 class RangeMap {
   public:
@@ -73,8 +54,6 @@ class RangeMap {
     void place_points(const PointCloud& resampled);
     void fill_gaps();
     void fill_gap(std::uint32_t u, std::uint32_t v, RangeCell& cell) const;
-    void find_shadows();
-    void find_shadows(std::uint32_t start, std::uint32_t step, std::uint32_t count);
     void look_around(const PointCloud& resampled);
     void look_around(const PointCloud& resampled, std::uint32_t u, std::uint32_t v);
 
