@@ -5,7 +5,7 @@
     for LIB in a b c; do ostraka calibrate $LIB.ostraka --scenes 72 --seed 1001 --examples $LIB.csv; done
     learn_confidence.py a.csv b.csv c.csv
 
-Prints the weights; the typical values of right reports (explanation_words.cpp); and for each library what
+Files of one library may be joined by commas (a1.csv,a2.csv). Prints the weights; the typical values of right reports (explanation_words.cpp); and for each library what
 weights learned from the others do on it. Needs numpy.
 """
 import argparse
@@ -17,16 +17,26 @@ PRIOR = 1.0  # precision of each standardized weight: what few examples show doe
 THRESHOLD = 0.8
 
 
-def read(path):
-    with open(path, newline="", encoding="ascii") as file:
-        rows = list(csv.reader(file))
-    numbers = numpy.array(rows[1:], dtype=float)
+def read(paths):
+    numbers = []
+    for path in paths.split(","):
+        with open(path, newline="", encoding="ascii") as file:
+            rows = list(csv.reader(file))
+        numbers.append(numpy.array(rows[1:], dtype=float))
+    numbers = numpy.vstack(numbers)
     return rows[0][:-1], numbers[:, :-1], numbers[:, -1]
 
 
-def fit(features, right):
+def fit(features, right, given):
     """Newton's method on the logistic loss; the first feature is the constant and has no prior. Each weight is
-    held to zero in units of its feature's spread."""
+    held to zero in units of its feature's spread; what is not NaN in `given` is not fitted."""
+    fixed = ~numpy.isnan(given)
+    weights = numpy.where(fixed, given, 0.0)
+    weights[~fixed] = fit_others(features[:, ~fixed], right, features[:, fixed] @ given[fixed])
+    return weights
+
+
+def fit_others(features, right, offset):
     spread = features.std(axis=0)
     spread[0] = 1.0
     spread[spread == 0.0] = 1.0
@@ -35,7 +45,7 @@ def fit(features, right):
     prior[0] = 1e-6
     weights = numpy.zeros(x.shape[1])
     for _ in range(200):
-        p = probability(weights, x)
+        p = probability(weights, x, offset)
         slope = x.T @ (right - p) - prior * weights
         curvature = (x * (p * (1.0 - p))[:, None]).T @ x + numpy.diag(prior)
         step = numpy.linalg.solve(curvature, slope)
@@ -45,8 +55,8 @@ def fit(features, right):
     return weights / spread
 
 
-def probability(weights, features):
-    return 1.0 / (1.0 + numpy.exp(-numpy.clip(features @ weights, -30.0, 30.0)))
+def probability(weights, features, offset=0.0):
+    return 1.0 / (1.0 + numpy.exp(-numpy.clip(features @ weights + offset, -30.0, 30.0)))
 
 
 def show(name, p, right):
@@ -59,22 +69,24 @@ def show(name, p, right):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("csv", nargs="+")
-    parser.add_argument("--without", action="append", default=[])
+    parser.add_argument("--without", action="append", default=[], help="feature that gets no weight")
+    parser.add_argument("--fix", action="append", default=[], metavar="FEATURE=WEIGHT", help="not fitted")
     parser.add_argument("--weights", help="show what these do instead: numbers separated by commas")
     options = parser.parse_args()
     sets = [read(path) for path in options.csv]
     names = sets[0][0]
-    used = numpy.array([name not in options.without for name in names])
-    data = [(features * used, right) for _, features, right in sets]
-    given = numpy.array(options.weights.split(","), dtype=float) if options.weights else None
+    fixed = dict(item.split("=") for item in options.fix) | dict.fromkeys(options.without, 0.0)
+    given = numpy.array([float(fixed.get(name, "nan")) for name in names])
+    if options.weights:
+        given = numpy.array(options.weights.split(","), dtype=float)
+    data = [(features, right) for _, features, right in sets]
     for i, (features, right) in enumerate(data):
         others = [d for k, d in enumerate(data) if k != i] or data
-        weights = given if given is not None else \
-            fit(numpy.vstack([f for f, _ in others]), numpy.hstack([r for _, r in others]))
+        weights = fit(numpy.vstack([f for f, _ in others]), numpy.hstack([r for _, r in others]), given)
         show(options.csv[i], probability(weights, features), right)
     features = numpy.vstack([f for f, _ in data])
     right = numpy.hstack([r for _, r in data])
-    weights = given if given is not None else fit(features, right)
+    weights = fit(features, right, given)
     show("all", probability(weights, features), right)
     print("\nfeature      weight  typical of right reports")
     for k, name in enumerate(names):

@@ -71,6 +71,33 @@ TriangleMesh larger() {
     return mesh;
 }
 
+// Along one long side of the plate's underside a wall rises from it, toward the sensor.
+TriangleMesh with_wall() {
+    TriangleMesh mesh = testing::plate_model();
+    TriangleMesh wall;
+    testing::add_box(wall, Vec3f(0, kWidth, 0), Vec3f(kLength, kWidth + 40, 8));
+    for (Vec3f& vertex : wall.vertices) vertex.z() -= vertex.y() - kWidth;
+    append(mesh, wall);
+    return mesh;
+}
+
+TEST(Outline, WhereSomethingGrowsOutOfTheSurfaceItIsJoined) {
+    const FromBelow test(with_wall());
+    EXPECT_NEAR(test.outline().joined, kLength / (2.0 * (kLength + kWidth)), 0.06);
+    const FromBelow alone(testing::plate_model());
+    EXPECT_EQ(alone.outline().joined, 0.0);
+    EXPECT_LT(test.confidence(), alone.confidence());
+}
+
+// Something before the plate that doesn't touch it only hides it.
+TEST(Outline, WhereSomethingElseIsInFrontItIsNotJoined) {
+    TriangleMesh mesh = testing::plate_model();
+    TriangleMesh other;
+    testing::add_box(other, Vec3f(0, kWidth - 20, -80), Vec3f(kLength, kWidth + 40, -60));
+    append(mesh, other);
+    EXPECT_LT(FromBelow(mesh).outline().joined, 0.02);
+}
+
 TEST(Outline, OfWhatStandsAloneIsConfirmedAllAround) {
     const FromBelow test(testing::plate_model());
     EXPECT_LT(test.outline().open, 0.05);  // at corners

@@ -19,21 +19,37 @@ constexpr std::size_t kKinds = 3;  // of scenes
 struct Quality {
     double noise;  // sampling distances
     int width;     // pixels of the sensor; 0: its own
+    bool faults;   // holes, shadows, lost edges and grazing rays (docs/sensors.md)
 };
-constexpr std::array<Quality, 4> kQualities = {{{0.15, 0}, {0.3, 400}, {0.6, 0}, {2.0, 0}}};
+constexpr std::array<Quality, 4> kQualities = {
+    {{0.15, 0, false}, {0.3, 400, true}, {0.6, 0, true}, {2.0, 0, false}}};
 constexpr std::size_t kConditions = kKinds * kQualities.size();
 constexpr std::size_t kFewKnown = 6;       // one in six: then hardly any model has a rival
 constexpr int kObjects = 8;                // dropped in each heap
 constexpr double kLeastConfidence = 0.02;  // of examples: what is below never matters
+constexpr double kTurned = 2.0;            // of max_adi: MSSD from which a pose is turned wrongly
 constexpr int kSteps = 100;                // of Newton's method, at most
 constexpr double kFarOff = 30.0;           // a logit that is as good as infinite
+
+SensorModel sensor_of(const ModelLibrary& library, const Quality& quality, std::uint64_t seed) {
+    const double sampling = library.settings.sampling;
+    SensorModel sensor;
+    sensor.ranging.noise = quality.noise * sampling;
+    sensor.ranging.seed = seed;
+    if (!quality.faults) return sensor;
+    sensor.ranging.max_grazing_angle = 1.4;
+    sensor.free_grazing_angle = 1.1;
+    sensor.projector.x() = 0.5 * mean_diameter(library);
+    sensor.edge_step = 3.0 * sampling;
+    sensor.edge_dropout = 0.3;
+    sensor.holes = 0.01;
+    return sensor;
+}
 
 SceneRecipe recipe_of(const ModelLibrary& library, std::size_t condition, std::uint64_t seed) {
     const std::size_t kind = condition % kKinds;
     const Quality& quality = kQualities[condition / kKinds];
-    SensorModel sensor;
-    sensor.ranging.noise = quality.noise * library.settings.sampling;
-    sensor.ranging.seed = seed;
+    const SensorModel sensor = sensor_of(library, quality, seed);
     if (kind == 0) {
         RandomViewSettings views{.sensor = sensor, .seed = seed};
         views.camera = resized(views.camera, 2 * quality.width);
@@ -68,16 +84,22 @@ std::vector<std::uint32_t> known_models(const ModelLibrary& library, std::size_t
     return known;
 }
 
+// What is in the right place but turned wrongly, as near-symmetric parts are, is an example of
+// neither: as right ones they taught that contradictions don't matter.
 std::vector<Example> examples_of(const TestScene& scene, const Recognizer& recognizer,
                                  const PoseJudge& judge, const SceneSettings& settings,
                                  double max_adi) {
     const Recognition answer = recognizer.recognize(scene.cloud, settings.recognition);
-    std::vector<Example> examples;
-    for (const RecognizedObject& object : answer.objects) {
-        examples.push_back({.features = object.features});
-    }
+    enum class Report : std::uint8_t { wrong, right, turned };
+    std::vector<Report> reports(answer.objects.size(), Report::wrong);
     for (const PosePair& pair : judge.judge(scene, answer.objects, settings)) {
-        if (pair.adi < max_adi) examples[pair.report].right = true;
+        if (pair.adi >= max_adi) continue;
+        reports[pair.report] = pair.mssd < kTurned * max_adi ? Report::right : Report::turned;
+    }
+    std::vector<Example> examples;
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        if (reports[i] == Report::turned) continue;
+        examples.push_back({answer.objects[i].features, reports[i] == Report::right});
     }
     return examples;
 }

@@ -23,6 +23,7 @@ enum class Feature : std::uint8_t {
     open,       ///< share of the outline where the scan's surface goes on
     level,      ///< share of the silhouette's outline where the scan is as high beyond
     folded,     ///< share of it where the scan's surface bends away and goes on
+    joined,     ///< share of the outline where something in front begins at the surface
     ended,      ///< logarithm of the cells of outline where the scan ends, too
     sunk,       ///< share that would be below the table
     solid,      ///< logarithm of what contradicts in one piece, as cells of the range map

@@ -40,6 +40,7 @@ Features features_of(const Verified& v) {
     set(Feature::open, v.outline.open);
     set(Feature::level, v.outline.level);
     set(Feature::folded, v.outline.folded);
+    set(Feature::joined, v.outline.joined);
     set(Feature::ended, std::log10(1.0 + v.outline.ended));
     set(Feature::sunk, v.sunk);
     set(Feature::solid, std::log10(1.0 + static_cast<double>(v.solid)));

@@ -20,18 +20,19 @@ struct FeatureFacts {
     double typical;
 };
 // Medians of the right reports that the general weights were learned from.
-constexpr std::array<FeatureFacts, 15> kFacts = {{{"constant", "", 1.0},
-                                                  {"clearness", "agreement", 0.982},
+constexpr std::array<FeatureFacts, 16> kFacts = {{{"constant", "", 1.0},
+                                                  {"clearness", "agreement", 0.974},
                                                   {"surplus", "fit", 0.0},
-                                                  {"turned", "fit", 0.03},
+                                                  {"turned", "fit", 0.028},
                                                   {"visible", "visible", 1.7},
-                                                  {"area", "size", 1.365},
-                                                  {"cells", "size", 1.68},
-                                                  {"grip", "grip", 0.614},
-                                                  {"open", "outline", 0.011},
+                                                  {"area", "size", 1.356},
+                                                  {"cells", "size", 1.661},
+                                                  {"grip", "grip", 0.617},
+                                                  {"open", "outline", 0.012},
                                                   {"level", "outline", 0.014},
                                                   {"folded", "outline", 0.0},
-                                                  {"ended", "outline", 1.94},
+                                                  {"joined", "outline", 0.008},
+                                                  {"ended", "outline", 1.887},
                                                   {"sunk", "sunk", 0.0},
                                                   {"solid", "contradiction", 0.0},
                                                   {"rival", "rival", 0.0}}};
@@ -118,6 +119,12 @@ std::string outline_words(const OutlineEvidence& outline, bool against) {
             "model lacks",
             percent(outline.folded));
     }
+    if (outline.joined >= kSome) {
+        return fmt::format(
+            "along {} of its outline something in front begins at the scan's surface: it may grow "
+            "out of it",
+            percent(outline.joined));
+    }
     if (outline.level >= kSome) {
         return fmt::format("along {} of its outline something as high is beside it",
                            percent(outline.level));
@@ -140,7 +147,7 @@ bool worse_than_usual(std::string_view topic, const Explanation& one) {
     if (topic == "grip") return lower(Feature::grip);
     if (topic == "outline") {
         return higher(Feature::open) || higher(Feature::level) || higher(Feature::folded) ||
-               lower(Feature::ended);
+               higher(Feature::joined) || lower(Feature::ended);
     }
     if (topic == "sunk") return higher(Feature::sunk);
     if (topic == "contradiction") return higher(Feature::solid);

@@ -71,7 +71,7 @@ struct Brink {
     std::uint32_t outside = kNoIndex;  // kOutward cells from there
 };
 
-enum class Beyond : std::uint8_t { unknown, open, nearer, level, folded, ended };
+enum class Beyond : std::uint8_t { unknown, open, joined, nearer, level, folded, ended };
 
 // Whether a supported cell and one beyond the outline show one smooth surface.
 bool continues(const Scan& scan, const VerdictImage& image, const Brink& brink) {
@@ -91,6 +91,15 @@ Vec3f seen_at(const RangeMap& ranges, std::uint32_t cell) {
     return ranges.viewpoint() + ranges[cell].near * ranges.direction(cell).cast<float>();
 }
 
+// Whether a face begins at the rim: its plane goes through it.
+// @param point  of the cloud, on the face, or kNoIndex. @param back  from there to the rim.
+bool begins_at(const Scan& scan, std::uint32_t point, const Vec3f& back) {
+    if (point == kNoIndex) return false;
+    const auto sampling = static_cast<float>(scan.sampling);
+    return std::abs(scan.cloud.normals[point].dot(back)) < kFoldSlack * sampling &&
+           back.norm() < kFoldReach * sampling;
+}
+
 Beyond beyond(const Scan& scan, const VerdictImage& image, const Brink& brink) {
     if (brink.inside == kNoIndex || brink.outside == kNoIndex) return Beyond::unknown;
     const std::uint32_t a = scan.ranges[brink.inside].point;
@@ -101,14 +110,11 @@ Beyond beyond(const Scan& scan, const VerdictImage& image, const Brink& brink) {
     const auto sampling = static_cast<float>(scan.sampling);
     const Vec3f outside = seen_at(scan.ranges, brink.outside);
     const float above = scan.cloud.normals[a].dot(outside - scan.cloud.points[a]);
-    if (above > sampling) return Beyond::nearer;
-    if (above > -sampling) return Beyond::level;
-    const std::uint32_t b = scan.ranges[brink.outside].point;
-    if (b == kNoIndex) return Beyond::ended;
-    // A face that begins at the rim: its plane goes through it.
-    const Vec3f back = seen_at(scan.ranges, brink.rim) - outside;
-    const bool begins_there = std::abs(scan.cloud.normals[b].dot(back)) < kFoldSlack * sampling;
-    return begins_there && back.norm() < kFoldReach * sampling ? Beyond::folded : Beyond::ended;
+    if (std::abs(above) <= sampling) return Beyond::level;
+    const bool face = begins_at(scan, scan.ranges[brink.outside].point,
+                                seen_at(scan.ranges, brink.rim) - outside);
+    if (above > 0.0F) return face ? Beyond::joined : Beyond::nearer;
+    return face ? Beyond::folded : Beyond::ended;
 }
 
 // Unit, out of the silhouette, in columns and rows; zero where it is all around.
@@ -125,6 +131,7 @@ Eigen::Vector2d outward(const VerdictImage& image, int u, int v) {
 struct OutlineSums {
     std::size_t outline = 0;     // also against what hides it
     std::size_t open = 0;        // of these
+    std::size_t joined = 0;      // of these
     std::size_t silhouette = 0;  // where something is known of it
     std::size_t level = 0;       // of these
     std::size_t folded = 0;      // of these
@@ -149,8 +156,10 @@ void judge_brink(const Scan& scan, const VerdictImage& image, int u, int v,
                                  image.cell(u + kOutward * du, v + kOutward * dv)});
     // Inside the silhouette only what goes on tells: where the scan isn't what a side of the model
     // would be, but what is beside it.
-    if (found == Beyond::open || (ends(1) && ends(kOutward))) ++sums.outline;
+    const bool over = ends(1) && ends(kOutward);
+    if (found == Beyond::open || over) ++sums.outline;
     if (found == Beyond::open) ++sums.open;
+    if (found == Beyond::joined && over) ++sums.joined;
     if (found == Beyond::unknown || !clear(1) || !clear(kOutward)) return;
     ++sums.silhouette;
     if (found == Beyond::level) ++sums.level;
@@ -182,6 +191,7 @@ OutlineEvidence judge_outline(const Scan& scan, std::span<const std::uint32_t> w
     return {.open = share(sums.open, sums.outline, kMinOutline),
             .level = share(sums.level, sums.silhouette, 1),
             .folded = share(sums.folded, sums.silhouette, 1),
+            .joined = share(sums.joined, sums.outline, kMinOutline),
             .ended = 2.0 * std::max(0.0, directions.eigenvalues()(0))};
 }
 

@@ -13,8 +13,8 @@
 
 namespace ostraka {
 
-/// What the scan shows where the visible part of a placed model ends. All but `open` are of its
-/// silhouette: against cells that the model doesn't cover at all.
+/// What the scan shows where the visible part of a placed model ends. All but `open` and `joined`
+/// are of its silhouette: against cells that the model doesn't cover at all.
 struct OutlineEvidence {
     double open = 0.0;   ///< share of the outline, also against what hides or contradicts it, where
                          ///< the scan shows one smooth surface on both sides: near 0 for an
@@ -23,6 +23,8 @@ struct OutlineEvidence {
     double folded = 0.0;  ///< share where the scan's surface bends away and goes on: a face that
                           ///< the model lacks (convex: most often of the same object; S. C. Stein
                           ///< et al., Object Partitioning using Local Convexity, CVPR 2014)
+    double joined = 0.0;  ///< share of the outline, also against what hides it, where something in
+                          ///< front begins at the scan's surface: it grows out of it, or touches it
     double ended = 0.0;   ///< cells of outline where the scan ends, too, and something farther or
                           ///< nothing is seen; of the image's two directions in that which has
                           ///< fewer, and twice that: a stripe of a wall ends only above and below
