@@ -5,8 +5,8 @@
     for LIB in a b c; do ostraka calibrate $LIB.ostraka --scenes 72 --seed 1001 --examples $LIB.csv; done
     learn_confidence.py a.csv b.csv c.csv
 
-Files of one library may be joined by commas (a1.csv,a2.csv). Prints the weights; the typical values of right reports (explanation_words.cpp); and for each library what
-weights learned from the others do on it. Needs numpy.
+Files of one library may be joined by commas (a1.csv,a2.csv). Prints the weights; the typical values of right
+reports (explanation_words.cpp); and for each library what weights learned from the others do on it. Needs numpy.
 """
 import argparse
 import csv
@@ -32,7 +32,8 @@ def fit(features, right, given):
     held to zero in units of its feature's spread; what is not NaN in `given` is not fitted."""
     fixed = ~numpy.isnan(given)
     weights = numpy.where(fixed, given, 0.0)
-    weights[~fixed] = fit_others(features[:, ~fixed], right, features[:, fixed] @ given[fixed])
+    if not fixed.all():
+        weights[~fixed] = fit_others(features[:, ~fixed], right, features[:, fixed] @ given[fixed])
     return weights
 
 

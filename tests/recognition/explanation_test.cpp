@@ -100,7 +100,7 @@ TEST(Explanation, OfWhatFloatsInFrontOfTheScanSaysThatItIsContradicted) {
     const Explanation& one = explained.front();
     EXPECT_TRUE(one.outcome == Outcome::doubtful || one.outcome == Outcome::too_small);
     EXPECT_GT(one.verified.violation, one.verified.support);
-    EXPECT_TRUE(says(one, "the sensor looked through it")) << one.verdict;
+    EXPECT_TRUE(says(one, "inside one piece: the sensor looked through it there")) << one.verdict;
     EXPECT_TRUE(says(one, "Not reported")) << one.verdict;
 }
 
