@@ -90,6 +90,19 @@ TEST(Outline, WhereSomethingGrowsOutOfTheSurfaceItIsJoined) {
     EXPECT_LT(test.confidence(), alone.confidence());
 }
 
+// Over one long side of the plate's underside something is nearer to the sensor, and touches nothing.
+TriangleMesh behind() {
+    TriangleMesh mesh = testing::plate_model();
+    testing::add_box(mesh, Vec3f(-20, kWidth - 20, -80), Vec3f(kLength + 20, kWidth + 40, -60));
+    return mesh;
+}
+
+TEST(Outline, WhereSomethingElseIsInFrontItIsNotJoined) {
+    const FromBelow test(behind());
+    EXPECT_GT(test.verified().visible_fraction, 0.5);
+    EXPECT_EQ(test.outline().joined, 0.0);
+}
+
 TEST(Outline, OfWhatStandsAloneIsConfirmedAllAround) {
     const FromBelow test(testing::plate_model());
     EXPECT_LT(test.outline().open, 0.05);  // at corners

@@ -91,6 +91,16 @@ Vec3f seen_at(const RangeMap& ranges, std::uint32_t cell) {
     return ranges.viewpoint() + ranges[cell].near * ranges.direction(cell).cast<float>();
 }
 
+// Where the rim's ray meets the plane of the surface inside it. Not what is seen there: in a cell
+// at the edge of something in front that is nearer.
+// @param a  point of the cloud, on the surface. Infinite where the ray runs along it.
+Vec3f rim_of(const Scan& scan, std::uint32_t a, std::uint32_t rim) {
+    const Vec3f ray = scan.ranges.direction(rim).cast<float>();
+    const Vec3f& normal = scan.cloud.normals[a];
+    const Vec3f& eye = scan.ranges.viewpoint();
+    return eye + normal.dot(scan.cloud.points[a] - eye) / normal.dot(ray) * ray;
+}
+
 // Whether a face begins at the rim: its plane goes through it.
 // @param point  of the cloud, on the face, or kNoIndex. @param back  from there to the rim.
 bool begins_at(const Scan& scan, std::uint32_t point, const Vec3f& back) {
@@ -112,7 +122,7 @@ Beyond beyond(const Scan& scan, const VerdictImage& image, const Brink& brink) {
     const float above = scan.cloud.normals[a].dot(outside - scan.cloud.points[a]);
     if (std::abs(above) <= sampling) return Beyond::level;
     const bool face = begins_at(scan, scan.ranges[brink.outside].point,
-                                seen_at(scan.ranges, brink.rim) - outside);
+                                rim_of(scan, a, brink.rim) - outside);
     if (above > 0.0F) return face ? Beyond::joined : Beyond::nearer;
     return face ? Beyond::folded : Beyond::ended;
 }
