@@ -90,7 +90,8 @@ TEST(Outline, WhereSomethingGrowsOutOfTheSurfaceItIsJoined) {
     EXPECT_LT(test.confidence(), alone.confidence());
 }
 
-// Over one long side of the plate's underside something is nearer to the sensor, and touches nothing.
+// Over one long side of the plate's underside something is nearer to the sensor, and touches
+// nothing.
 TriangleMesh behind() {
     TriangleMesh mesh = testing::plate_model();
     testing::add_box(mesh, Vec3f(-20, kWidth - 20, -80), Vec3f(kLength + 20, kWidth + 40, -60));

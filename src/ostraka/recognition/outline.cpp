@@ -121,8 +121,8 @@ Beyond beyond(const Scan& scan, const VerdictImage& image, const Brink& brink) {
     const Vec3f outside = seen_at(scan.ranges, brink.outside);
     const float above = scan.cloud.normals[a].dot(outside - scan.cloud.points[a]);
     if (std::abs(above) <= sampling) return Beyond::level;
-    const bool face = begins_at(scan, scan.ranges[brink.outside].point,
-                                rim_of(scan, a, brink.rim) - outside);
+    const bool face =
+        begins_at(scan, scan.ranges[brink.outside].point, rim_of(scan, a, brink.rim) - outside);
     if (above > 0.0F) return face ? Beyond::joined : Beyond::nearer;
     return face ? Beyond::folded : Beyond::ended;
 }
