@@ -155,33 +155,5 @@ TEST(CheckCell, AMissingReturnInAShadowSaysNothing) {
     EXPECT_EQ(verdict(static_cast<float>(1.10 * begin)), CellVerdict::unsure);
 }
 
-TEST(SolidContradiction, CountsTheInsideOfPiecesButNoLines) {
-    PointCloud wall;
-    for (int y = -20; y <= 20; ++y) {
-        for (int x = -20; x <= 20; ++x) {
-            wall.points.emplace_back(static_cast<float>(x), static_cast<float>(y), 100.0F);
-        }
-    }
-    const RangeMap map(wall, {}, {}, 1.0);
-    std::vector<std::uint32_t> window;
-    for (std::uint32_t cell = 0; cell < map.size(); ++cell) window.push_back(cell);
-    std::vector<CellVerdict> verdicts(window.size(), CellVerdict::support);
-    EXPECT_EQ(solid_contradiction(map, window, verdicts), 0U);
-    const auto fill = [&](std::uint32_t u, std::uint32_t v, std::uint32_t columns,
-                          std::uint32_t rows, CellVerdict verdict) {
-        for (std::uint32_t y = v; y < v + rows; ++y) {
-            for (std::uint32_t x = u; x < u + columns; ++x) verdicts[y * map.width() + x] = verdict;
-        }
-    };
-    fill(2, 2, 2, 20, CellVerdict::violation);  // a line, two cells wide
-    EXPECT_EQ(solid_contradiction(map, window, verdicts), 0U);
-    fill(8, 4, 7, 5, CellVerdict::violation);
-    EXPECT_EQ(solid_contradiction(map, window, verdicts), 5U * 3U);
-    fill(10, 6, 2, 1, CellVerdict::backdrop);  // contradicts as well
-    EXPECT_EQ(solid_contradiction(map, window, verdicts), 5U * 3U);
-    fill(10, 6, 1, 1, CellVerdict::missing);  // says nothing: none of the nine around it counts
-    EXPECT_EQ(solid_contradiction(map, window, verdicts), 2U * 3U);
-}
-
 }  // namespace
 }  // namespace ostraka

@@ -27,6 +27,7 @@ enum class Feature : std::uint8_t {
     ended,      ///< logarithm of the cells of outline where the scan ends, too
     sunk,       ///< share that would be below the table
     solid,      ///< logarithm of what contradicts in one piece, as cells of the range map
+    hollow,     ///< logarithm of cells of holes that the model lacks
     rival,      ///< how well the best other model explains the same, as a share; at most 1
     count       // how many there are
 };

@@ -34,6 +34,8 @@ struct CellCheck {
     CellVerdict verdict = CellVerdict::missing;
     float off = 0.0F;        ///< of support: from the model to the scan, along the model's normal
     float agreement = 1.0F;  ///< of support: cosine between the normals
+    bool through = false;    ///< something farther is seen, on a face that isn't at a slant: in
+                             ///< violation, or unsure beside an edge
 };
 
 inline constexpr float kMinAgreement = 0.7F;  ///< cosine between the normals of model and scan
@@ -62,7 +64,8 @@ inline CellCheck check_cell(const Scan& scan, std::uint32_t cell, const SurfaceP
     const float slack = tolerance / std::max(kMinSlope, piece.slope);
     if (piece.range < seen.near - slack) {
         const bool clear = piece.range < seen.nearest_around - slack;
-        return {clear ? CellVerdict::violation : CellVerdict::unsure};
+        return {.verdict = clear ? CellVerdict::violation : CellVerdict::unsure,
+                .through = !slanted};
     }
     if (piece.range > seen.far + slack) return {CellVerdict::hidden};
     const bool edge_on = piece.slope < kEdgeOn;

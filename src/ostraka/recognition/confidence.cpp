@@ -44,6 +44,7 @@ Features features_of(const Verified& v) {
     set(Feature::ended, std::log10(1.0 + v.outline.ended));
     set(Feature::sunk, v.sunk);
     set(Feature::solid, std::log10(1.0 + static_cast<double>(v.solid)));
+    set(Feature::hollow, std::log10(1.0 + static_cast<double>(v.hollow)));
     return features;
 }
 

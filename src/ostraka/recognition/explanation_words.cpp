@@ -20,7 +20,7 @@ struct FeatureFacts {
     double typical;
 };
 // Medians of the right reports that the general weights were learned from.
-constexpr std::array<FeatureFacts, 16> kFacts = {{{"constant", "", 1.0},
+constexpr std::array<FeatureFacts, 17> kFacts = {{{"constant", "", 1.0},
                                                   {"clearness", "agreement", 0.974},
                                                   {"surplus", "fit", 0.0},
                                                   {"turned", "fit", 0.028},
@@ -35,6 +35,7 @@ constexpr std::array<FeatureFacts, 16> kFacts = {{{"constant", "", 1.0},
                                                   {"ended", "outline", 1.887},
                                                   {"sunk", "sunk", 0.0},
                                                   {"solid", "contradiction", 0.0},
+                                                  {"hollow", "hollow", 0.0},
                                                   {"rival", "rival", 0.0}}};
 
 // Nothing of a feature that is not in the list.
@@ -151,6 +152,7 @@ bool worse_than_usual(std::string_view topic, const Explanation& one) {
     }
     if (topic == "sunk") return higher(Feature::sunk);
     if (topic == "contradiction") return higher(Feature::solid);
+    if (topic == "hollow") return higher(Feature::hollow);
     if (topic == "rival") return higher(Feature::rival);
     return true;
 }
@@ -182,6 +184,10 @@ std::string words_for(std::string_view topic, const Explanation& one, bool again
             "{} cells contradict it{}: the sensor looked through it there, or the surface faces "
             "elsewhere",
             v.violation + v.backdrop, together);
+    }
+    if (topic == "hollow") {
+        return against ? fmt::format("it covers holes of the scan's surface: {} cells", v.hollow)
+                       : "the scan has no holes that it lacks";
     }
     if (topic == "rival") {
         if (one.object.rival.empty()) return "no other model explains the same";

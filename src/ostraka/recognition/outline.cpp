@@ -3,8 +3,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "ostraka/recognition/verdict_image.hpp"
 
 namespace ostraka {
 namespace {
@@ -16,53 +17,6 @@ constexpr std::size_t kMinOutline = 12;  // cells of outline; fewer say nothing
 constexpr float kFoldSlack = 1.5F;       // sampling distances from a face's plane to the rim, and
 constexpr float kFoldReach = 8.0F;       // from a place on the face, if it begins at the rim
 constexpr int kAround = 3;               // cells around one that give the outline's direction
-
-// The verdicts by column u and row v of the range map.
-class VerdictImage {
-  public:
-    VerdictImage(const RangeMap& ranges, std::span<const std::uint32_t> window,
-                 std::span<const CellVerdict> verdicts)
-        : width_(static_cast<int>(ranges.width())),
-          height_(static_cast<int>(ranges.height())),
-          low_u_(u(window.front())),
-          low_v_(v(window.front())),
-          columns_(u(window.back()) - low_u_ + 1),
-          verdicts_(verdicts) {}
-
-    CellVerdict at(int u, int v) const {
-        const int column = u - low_u_;
-        const int row = v - low_v_;
-        if (column < 0 || row < 0 || column >= columns_) return CellVerdict::outside;
-        const auto i = static_cast<std::size_t>(row * columns_ + column);
-        return i < verdicts_.size() ? verdicts_[i] : CellVerdict::outside;
-    }
-    // Whether the visible part of the model has ended there.
-    bool beyond(int u, int v) const {
-        const CellVerdict verdict = at(u, v);
-        return verdict == CellVerdict::outside || verdict == CellVerdict::hidden;
-    }
-    // Whether the model's surface isn't where the scan's is.
-    bool lacks(int u, int v) const {
-        const CellVerdict verdict = at(u, v);
-        return beyond(u, v) || verdict == CellVerdict::violation;
-    }
-    std::uint32_t cell(int u, int v) const {
-        if (u < 0 || v < 0 || u >= width_ || v >= height_) return kNoIndex;
-        return static_cast<std::uint32_t>(v * width_ + u);
-    }
-    int u(std::uint32_t cell) const { return static_cast<int>(cell) % width_; }
-    int v(std::uint32_t cell) const { return static_cast<int>(cell) / width_; }
-
-  private:
-    int width_;
-    int height_;
-    int low_u_;
-    int low_v_;
-    int columns_;
-    std::span<const CellVerdict> verdicts_;
-};
-
-constexpr std::array<std::pair<int, int>, 4> kSides = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
 // A place where the supported part ends, in the direction of one of the four sides of a cell.
 struct Brink {
@@ -203,24 +157,6 @@ OutlineEvidence judge_outline(const Scan& scan, std::span<const std::uint32_t> w
             .folded = share(sums.folded, sums.silhouette, 1),
             .joined = share(sums.joined, sums.outline, kMinOutline),
             .ended = 2.0 * std::max(0.0, directions.eigenvalues()(0))};
-}
-
-std::size_t solid_contradiction(const RangeMap& ranges, std::span<const std::uint32_t> window,
-                                std::span<const CellVerdict> verdicts) {
-    if (window.empty()) return 0;
-    const VerdictImage image(ranges, window, verdicts);
-    const auto contradicts = [&](int u, int v) {
-        const CellVerdict verdict = image.at(u, v);
-        return verdict == CellVerdict::violation || verdict == CellVerdict::backdrop;
-    };
-    return static_cast<std::size_t>(
-        std::count_if(window.begin(), window.end(), [&](std::uint32_t cell) {
-            for (int n = 0; n < 9; ++n) {
-                if (!contradicts(image.u(cell) + n % 3 - 1, image.v(cell) + n / 3 - 1))
-                    return false;
-            }
-            return true;
-        }));
 }
 
 }  // namespace ostraka

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verdicts on a placed model as a picture: where they end, and where they contradict.
 // Where the visible part of a placed model ends, the scan's surface should end, too: at a depth
 // edge. A flat face fits into any wall and a bulge into any ball, but those go on; and into any
 // tray, but there the outline is nowhere seen.
@@ -34,12 +33,5 @@ struct OutlineEvidence {
 /// @param verdicts  one for each of them.
 OutlineEvidence judge_outline(const Scan& scan, std::span<const std::uint32_t> window,
                               std::span<const CellVerdict> verdicts);
-
-/// Cells that contradict, in violation or backdrop, as do all eight around them. Where the model is
-/// right, noise and edges contradict in specks and lines; where it is another that looks alike,
-/// they do in pieces.
-/// @param ranges    the range map. @param window, verdicts  as above.
-std::size_t solid_contradiction(const RangeMap& ranges, std::span<const std::uint32_t> window,
-                                std::span<const CellVerdict> verdicts);
 
 }  // namespace ostraka

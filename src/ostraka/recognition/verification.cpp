@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ostraka/recognition/cell_check.hpp"
+#include "ostraka/recognition/contradiction.hpp"
 #include "ostraka/recognition/merged_scan.hpp"
 
 namespace ostraka {
@@ -115,6 +116,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
     }
     const std::vector<RayHit> hits = probe.rays().cast(T_model_scene * eye, rays);
     std::vector<CellVerdict> verdicts(window.size(), CellVerdict::outside);
+    std::vector<bool> through(window.size(), false);
     Sums sums;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         if (!hits[i].hit()) continue;
@@ -129,6 +131,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
         const CellCheck check = check_cell(scan, window[i], piece, static_cast<float>(tolerance),
                                            static_cast<float>(shape.diameter));
         verdicts[i] = check.verdict;
+        through[i] = check.through;
         if (check.verdict != CellVerdict::backdrop) {
             result.depth_fit += depth_fit(scan.ranges[window[i]], range, tolerance);
         }
@@ -142,6 +145,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
     result.area =
         static_cast<double>(result.support) * cell_area / (shape.diameter * shape.diameter);
     result.solid = solid_contradiction(scan.ranges, window, verdicts);
+    result.hollow = hollow_contradiction(scan.ranges, window, verdicts, through);
     result.outline = judge_outline(scan, window, verdicts);
     if (detail != nullptr) *detail = {window, std::move(verdicts)};
     return result;
