@@ -48,6 +48,14 @@ TriangleMesh marked_disk() {
     return mesh;
 }
 
+// A cup of which nobody sees the inside: about as wide as high, so that little tilts its axes.
+TriangleMesh cup() {
+    TriangleMesh mesh;
+    add_disk(mesh, 40.0F, 74.0F);
+    testing::add_box(mesh, Vec3f(38, -6, 50), Vec3f(66, 6, 70));
+    return mesh;
+}
+
 ModelLibrary library_of(TriangleMesh mesh) {
     const std::vector<ModelSource> models = {{.name = "plate", .mesh = std::move(mesh)}};
     return build_library(models, testing::quick_settings());
@@ -93,6 +101,18 @@ TEST(NearSymmetries, GoAllAroundAMarkedDiskAndTurnItOver) {
     }
     EXPECT_GE(turns.size() - over, 30U);
     EXPECT_GE(over, 30U);
+}
+
+TEST(NearSymmetries, GoAllAroundACupWhoseHandleTiltsItsAxes) {
+    const ModelLibrary library = library_of(cup());
+    const Mat3d& axes = library.models[0].shape.axes;
+    ASSERT_LT(axes.row(2).cwiseAbs().maxCoeff(), 0.98);
+    std::size_t upright = 0;  // about the cup's own axis
+    for (const Pose& turn : turns_of(library)) {
+        const bool same_axis = (turn.linear() * Vec3d::UnitZ()).z() > 0.999;
+        if (same_axis && (turn * Vec3d::Zero()).norm() < 1.0) ++upright;
+    }
+    EXPECT_GE(upright, 30U);
 }
 
 // With and without noise, from above, where the mark is seen.

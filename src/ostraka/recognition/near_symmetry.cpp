@@ -2,23 +2,28 @@
 #include "ostraka/recognition/near_symmetry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include "ostraka/mesh/symmetry_poses.hpp"
 #include "ostraka/mesh/turns.hpp"
 #include "ostraka/registration/icp.hpp"
+#include "ostraka/views/viewpoints.hpp"
 
 namespace ostraka {
 namespace {
 
-constexpr int kSteps = 36;               // in a full turn: registration gets back from half a step
-constexpr std::size_t kSmallest = 2;     // steps: smaller turns map anything nearly onto itself
-constexpr double kSameDirection = 0.98;  // cosine of 11 degrees
-constexpr double kShare = 0.75;          // of the surface that lies on itself again
-constexpr double kShareBefore = 0.6;     // the same before registration
-constexpr double kReach = 0.04;          // diameters between the surfaces before registration,
-constexpr double kClose = 0.015;         // and after it; or, in sampling distances:
+constexpr int kSteps = 36;                // in a full turn: registration gets back from half a step
+constexpr std::size_t kSmallest = 3;      // steps: smaller turns map anything nearly onto itself
+constexpr std::size_t kQuarter = 9;       // steps: turns of which the axis is known well
+constexpr double kSameDirection = 0.95;   // cosine of 18 degrees
+constexpr std::size_t kDirections = 162;  // that an axis may have, 16 degrees apart
+constexpr std::array kTriedSteps = {3, 6, 9, 12, 18};  // about each of them
+constexpr double kShare = 0.75;                        // of the surface that lies on itself again
+constexpr double kShareBefore = 0.6;                   // the same before registration
+constexpr double kReach = 0.04;   // diameters between the surfaces before registration,
+constexpr double kClose = 0.015;  // and after it; or, in sampling distances:
 constexpr double kLeastReach = 3.0;
 constexpr double kLeastClose = 1.5;
 constexpr double kSame = 3.0;       // sampling distances between turns that are the same
@@ -89,17 +94,46 @@ std::vector<Pose> combined(std::vector<Pose> turns, const Pose& with) {
     return turns;
 }
 
-// Turns about a line, and half turns across it after them. The line is registered first: what
-// tells the turns apart may be less than what a guess of it is off.
-std::vector<Pose> candidates(const Finder& finder, const Line& guess, const Vec3d& across,
-                             double reach, double close) {
-    const std::vector<Pose> guesses = turns_about(guess);
-    const auto large = std::span(guesses).subspan(kSmallest, guesses.size() - 2 * kSmallest);
+// The direction through a point about which turns do best on the whole. A cup as wide as it is
+// high, but for its handle, has its principal directions anywhere.
+Line likely_axis(const Finder& finder, const Vec3d& point, double reach) {
+    Line best{.direction = Vec3d::UnitZ(), .point = point};
+    double most = 0.0;
+    for (const Vec3d& direction : viewpoints(static_cast<int>(kDirections))) {
+        if (direction.z() < 0.0) continue;
+        const Line line{.direction = direction, .point = point};
+        double sum = 0.0;
+        for (const int steps : kTriedSteps) {
+            sum += finder.share(turn_about(line, 2.0 * kPi * steps / kSteps), reach);
+        }
+        if (sum <= most) continue;
+        most = sum;
+        best = line;
+    }
+    return best;
+}
+
+// The axis of the best turn about a line, of so many steps at least, registered.
+std::optional<Line> registered_axis(const Finder& finder, const Line& guess, std::size_t smallest,
+                                    double reach, double close) {
+    const std::vector<Pose> turns = turns_about(guess);
+    const auto large = std::span(turns).subspan(smallest - 1, turns.size() - 2 * (smallest - 1));
     const std::optional<Pose> best = finder.best(large, reach, close);
-    if (!best) return {};
+    if (!best) return std::nullopt;
     double angle = 0.0;
     const Line line = axis_of(*best, angle);
-    if (std::abs(line.direction.dot(guess.direction)) < kSameDirection) return {};
+    if (std::abs(line.direction.dot(guess.direction)) < kSameDirection) return std::nullopt;
+    return line;
+}
+
+// Turns about a line, and half turns across it after them. The line is registered first: what
+// tells the turns apart may be less than what a guess of it is off. A wrong guess allows for small
+// turns only, which tell the axis roughly; then larger ones tell it better.
+std::vector<Pose> candidates(const Finder& finder, const Line& guess, const Vec3d& across,
+                             double reach, double close) {
+    const std::optional<Line> rough = registered_axis(finder, guess, kSmallest, reach, close);
+    if (!rough) return {};
+    const Line line = registered_axis(finder, *rough, kQuarter, reach, close).value_or(*rough);
     std::vector<Pose> all = turns_about(line);
     const Pose flip = turn_about({.direction = across, .point = guess.point}, kPi);
     if (const auto half = finder.best(combined(all, flip), reach, close)) {
@@ -133,10 +167,14 @@ std::vector<Pose> near_symmetries(const SurfaceField& field, std::span<const Vec
         });
         if (!known) kept.push_back(turn);
     };
-    for (int main = 0; main < 3; ++main) {
-        const Line line{.direction = shape.axes.col(main), .point = center};
-        const Vec3d across = shape.axes.col((main + 1) % 3);
+    const auto keep_about = [&](const Line& line, const Vec3d& across) {
         for (const Pose& turn : candidates(finder, line, across, reach, close)) keep(turn);
+    };
+    const Line likely = likely_axis(finder, center, reach);
+    keep_about(likely, likely.direction.unitOrthogonal());
+    for (int main = 0; main < 3; ++main) {
+        keep_about({.direction = shape.axes.col(main), .point = center},
+                   shape.axes.col((main + 1) % 3));
     }
     kept.erase(kept.begin());
     return kept;

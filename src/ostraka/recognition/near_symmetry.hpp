@@ -12,8 +12,9 @@
 
 namespace ostraka {
 
-/// Turns about the principal directions of the surface, those by steps about one of them and half
-/// turns across, after which three quarters of the surface lie on it again.
+/// Turns about the principal directions of the surface and the direction that does best, those by
+/// steps about one of them and half turns across, after which three quarters of the surface lie on
+/// it again.
 /// @param field    of the model's surface; model frame.
 /// @param points, normals  evenly spread on the surface.
 /// @param exact    the model's symmetries: of turns that are the same but for one of these, only

@@ -20,7 +20,8 @@ constexpr double kOnSurface = 1.5;     // sampling distances from an object that
 constexpr double kFaceSlack = 3.0;     // sampling distances that a face may seem to be longer
 constexpr std::size_t kMostByFaces = 4000;  // poses of each model
 constexpr std::size_t kTurnPoints = 800;    // by which each turn is registered
-constexpr double kTurnReach = 2.5;          // sampling distances
+constexpr double kTurnReach = 2.5;          // sampling distances, and of the diameter at least:
+constexpr double kTurnShare = 0.045;        // half a step of the turns, at its far end
 constexpr std::size_t kTurnsRefined = 3;    // of those that map a model nearly onto itself
 constexpr double kTwin = 0.5;               // sampling distances between poses that are the same
 
@@ -197,11 +198,13 @@ Judged SceneSearch::best_turn(const Judged& found) const {
     };
     const Hypothesis& hypothesis = found.verified.hypothesis;
     const ModelProbe& probe = probes_[hypothesis.model];
+    const double reach =
+        std::max(kTurnReach * scan_.sampling, kTurnShare * probe.model().shape.diameter);
     std::vector<Judged> turned(probe.turns().size());
     parallel_for(turned.size(), [&](std::size_t i) {
         Hypothesis one = hypothesis;
         one.T_scene_model = refine_pose(scan_, probe, hypothesis.T_scene_model * probe.turns()[i],
-                                        kTurnPoints, kTurnReach * scan_.sampling);
+                                        kTurnPoints, reach);
         turned[i] = judge(one, found.round);
     });
     std::stable_sort(turned.begin(), turned.end(), better);
