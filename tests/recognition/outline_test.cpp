@@ -2,6 +2,7 @@
 #include "ostraka/recognition/outline.hpp"
 
 #include "ostraka/recognition/confidence.hpp"
+#include "ostraka/recognition/verdict_image.hpp"
 #include "recognition/recognition_testing.hpp"
 
 namespace ostraka {
@@ -20,17 +21,38 @@ class FromBelow {
           scan_(prepared(scene_)),
           verified_(verify(scan_, probe(kPlate),
                            {.model = kPlate, .T_scene_model = scene_.objects[0].T_scene_model},
-                           tolerance())) {}
+                           tolerance(), &detail_)) {}
     const Verified& verified() const { return verified_; }
     const OutlineEvidence& outline() const { return verified_.outline; }
+    // The outline if so many cells at the rim couldn't be judged.
+    OutlineEvidence outline_with_edge(int cells) const;
     double cell() const { return scan_.cell; }
     double confidence() const { return general_confidence().confidence(features_of(verified_)); }
 
   private:
     SimulatedScene scene_;
     Scan scan_;
+    CellVerdicts detail_;
     Verified verified_;
 };
+
+OutlineEvidence FromBelow::outline_with_edge(int cells) const {
+    std::vector<CellVerdict> verdicts = detail_.verdicts;
+    for (int pass = 0; pass < cells; ++pass) {
+        const std::vector<CellVerdict> before = verdicts;
+        const VerdictImage image(scan_.ranges, detail_.cells, before);
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            if (before[i] != CellVerdict::support) continue;
+            const int u = image.u(detail_.cells[i]);
+            const int v = image.v(detail_.cells[i]);
+            for (const auto& [du, dv] : kSides) {
+                if (image.at(u + du, v + dv) == CellVerdict::support) continue;
+                verdicts[i] = CellVerdict::unsure;
+            }
+        }
+    }
+    return judge_outline(scan_, detail_.cells, verdicts);
+}
 
 // The plate's underside is the floor of a tray, as seen from below.
 TriangleMesh tray() {
@@ -102,6 +124,21 @@ TEST(Outline, WhereSomethingElseIsInFrontItIsNotJoined) {
     const FromBelow test(behind());
     EXPECT_GT(test.verified().visible_fraction, 0.5);
     EXPECT_EQ(test.outline().joined, 0.0);
+}
+
+// By half a cell, as scans are.
+TriangleMesh hardly_larger() {
+    TriangleMesh mesh;
+    testing::add_box(mesh, Vec3f(-1, -1, 0), Vec3f(kLength + 1, kWidth + 1, 8));
+    return mesh;
+}
+
+TEST(Outline, OfAThinBrimThatCannotBeJudgedIsNotOpen) {
+    const FromBelow test(hardly_larger());
+    for (const int cells : {1, 2, 3}) {
+        EXPECT_LT(test.outline_with_edge(cells).open, 0.05) << cells;
+    }
+    EXPECT_GT(FromBelow(larger()).outline_with_edge(2).open, 0.3);
 }
 
 TEST(Outline, OfWhatStandsAloneIsConfirmedAllAround) {

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kInward = 2;               // cells from the outline into the model, past the rim,
 constexpr int kOutward = 3;              // and out of it, where normals are those of one side only
+constexpr int kWidestEdge = 3;           // cells of edge; a thin brim has more than one
 constexpr float kContinues = 0.9F;       // cosine between normals on both sides of a smooth surface
 constexpr std::size_t kMinOutline = 12;  // cells of outline; fewer say nothing
 constexpr float kFoldSlack = 1.5F;       // sampling distances from a face's plane to the rim, and
@@ -102,6 +103,16 @@ struct OutlineSums {
     Eigen::Matrix2d ended = Eigen::Matrix2d::Zero();
 };
 
+// From a cell to the first one where the model's edge, which can't be judged, has ended.
+int steps_off(const VerdictImage& image, int u, int v, const std::pair<int, int>& side) {
+    int steps = 1;
+    while (steps <= kWidestEdge &&
+           image.at(u + steps * side.first, v + steps * side.second) == CellVerdict::unsure) {
+        ++steps;
+    }
+    return steps;
+}
+
 void judge_brink(const Scan& scan, const VerdictImage& image, int u, int v,
                  const std::pair<int, int>& side, OutlineSums& sums) {
     const auto& [du, dv] = side;
@@ -110,21 +121,22 @@ void judge_brink(const Scan& scan, const VerdictImage& image, int u, int v,
     const auto clear = [&](int steps) {
         return image.at(u + steps * du, v + steps * dv) == CellVerdict::outside;
     };
-    const bool edge = image.at(u + du, v + dv) == CellVerdict::unsure;
-    if ((!lacks(1) && !edge) || !lacks(kOutward)) return;
+    const int first = steps_off(image, u, v, side);
+    const int last = first + kOutward - 1;
+    if (!lacks(first) || !lacks(last)) return;
     const int inner_u = u - kInward * du;
     const int inner_v = v - kInward * dv;
     if (image.at(inner_u, inner_v) != CellVerdict::support) return;
-    const Beyond found = beyond(scan, image,
-                                {image.cell(inner_u, inner_v), image.cell(u, v),
-                                 image.cell(u + kOutward * du, v + kOutward * dv)});
+    const Beyond found = beyond(
+        scan, image,
+        {image.cell(inner_u, inner_v), image.cell(u, v), image.cell(u + last * du, v + last * dv)});
     // Inside the silhouette only what goes on tells: where the scan isn't what a side of the model
     // would be, but what is beside it.
-    const bool over = ends(1) && ends(kOutward);
+    const bool over = ends(1) && ends(last);
     if (found == Beyond::open || over) ++sums.outline;
     if (found == Beyond::open) ++sums.open;
     if (found == Beyond::joined && over) ++sums.joined;
-    if (found == Beyond::unknown || !clear(1) || !clear(kOutward)) return;
+    if (found == Beyond::unknown || !clear(1) || !clear(last)) return;
     ++sums.silhouette;
     if (found == Beyond::level) ++sums.level;
     if (found == Beyond::folded) ++sums.folded;
