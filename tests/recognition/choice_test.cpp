@@ -143,6 +143,11 @@ TEST(Choose, ManySmallWrongOnesDontOutweighALargeRightOne) {
     EXPECT_EQ(chosen_of(candidates, 0.5), (std::vector<std::size_t>{0}));
 }
 
+TEST(Choose, OfTwoThatAreSureTheWholeNotThePart) {
+    const auto chosen = chosen_of({candidate(0.9997, 0, 4300), candidate(0.9992, 0, 4700)}, 0.5);
+    EXPECT_EQ(chosen, (std::vector<std::size_t>{1}));
+}
+
 TEST(Choose, TwoHalvesDontOutweighTheWholeForBeingTwo) {
     const std::vector<Verified> candidates = {candidate(0.999, 0, 1000), candidate(0.995, 0, 450),
                                               candidate(0.995, 500, 950)};

@@ -7,11 +7,12 @@
 namespace ostraka {
 namespace {
 
-constexpr double kMaxShared = 0.35;  // of the smaller support of two that may stand together
-constexpr double kSamePlace = 0.7;   // of the smaller support of two poses at the same place
-constexpr double kSamePiece = 0.5;   // of the smaller support of rivals
-constexpr double kAsMuch = 0.9;      // of the explained value of another pose of the model
-constexpr int kMaxSteps = 200'000;   // of branch and bound, a group of conflicting hypotheses
+constexpr double kMaxShared = 0.35;   // of the smaller support of two that may stand together
+constexpr double kSamePlace = 0.7;    // of the smaller support of two poses at the same place
+constexpr double kSamePiece = 0.5;    // of the smaller support of rivals
+constexpr double kAsMuch = 0.9;       // of the explained value of another pose of the model
+constexpr double kLeastDoubt = 1e-3;  // what is surer is as sure
+constexpr int kMaxSteps = 200'000;    // of branch and bound, a group of conflicting hypotheses
 
 std::size_t shared_cells(const Verified& a, const Verified& b) {
     if (a.cells.empty() || b.cells.empty()) return 0;
@@ -133,7 +134,7 @@ std::vector<std::size_t> best_of_group(const std::vector<std::size_t>& group,
 }  // namespace
 
 double explained_value(const Verified& v) {
-    const double doubt = std::max(1.0 - v.confidence, 1e-9);
+    const double doubt = std::max(1.0 - v.confidence, kLeastDoubt);
     return -std::log(doubt) * static_cast<double>(v.support);
 }
 

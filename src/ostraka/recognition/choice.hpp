@@ -10,9 +10,11 @@
 
 namespace ostraka {
 
-/// What a hypothesis adds to an explanation: -log(1 - confidence) support. It grows with how sure
-/// the hypothesis is, and in proportion to what it explains: a scan that one object explains is not
-/// explained better by two that share it.
+/// What a hypothesis adds to an explanation: -log(1 - confidence) support, of confidences of at
+/// most 0.999. It grows with how sure the hypothesis is, and in proportion to what it explains: a
+/// scan that one object explains is not explained better by two that share it. Of two that are all
+/// but sure the one that explains more counts more: the whole, not a part of it that is a model,
+/// too.
 double explained_value(const Verified& v);
 
 /// Of two poses of one model at the same place, whether `v` is the better one: it explains about as
