@@ -245,6 +245,36 @@ TEST(Recognize, ReportsNothingWhereNoModelIs) {
     }
 }
 
+// Their tops are one plane, larger than any of them: from afar it looks like a table's or a wall's.
+TEST(Recognize, FindsBoxesSideBySide) {
+    TriangleMesh box;
+    testing::add_box(box, Vec3f(-50, -30, 0), Vec3f(50, 30, 35));
+    const ModelLibrary boxes =
+        build_library(std::vector<ModelSource>{{"box", box}}, testing::quick_settings());
+    const Recognizer recognizer(boxes);
+    const SceneModels models = scene_models({box});
+    std::vector<PlacedModel> placed;
+    for (int i = 0; i < 6; ++i) {
+        PlacedModel one{0, Pose::Identity()};
+        one.T_world_model.translation() = Vec3d(106.0 * (i % 2) - 53.0, 66.0 * (i / 2) - 66.0, 0.0);
+        placed.push_back(one);
+    }
+    SceneView view{.T_camera_world = look_at(Vec3d(120, -330, 480), Vec3d::Zero())};
+    view.sensor.ranging.noise = 0.3;
+    view.table_size = 1000.0;
+    const SimulatedScene scene = simulate_scene(models, placed, view);
+    const Recognition result = recognizer.recognize(scene.cloud);
+    EXPECT_EQ(result.objects.size(), 6U);
+    for (const TrueObject& truth : scene.objects) {
+        double least = 1.0;
+        for (const RecognizedObject& object : result.objects) {
+            least =
+                std::min(least, pose_error(boxes, 0, truth.T_scene_model, object.T_scene_model));
+        }
+        EXPECT_LT(least, 0.01);
+    }
+}
+
 TEST(Recognize, TheThresholdDecidesWhatIsReported) {
     const SimulatedScene scene = tabletop({kPlate, kCorner}, 0);
     EXPECT_TRUE(recognize(library(), scene.cloud, {.min_confidence = 1.1}).objects.empty());

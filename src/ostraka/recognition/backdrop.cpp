@@ -6,6 +6,7 @@
 
 #include "ostraka/cloud/normals.hpp"
 #include "ostraka/cloud/resample.hpp"
+#include "ostraka/recognition/surface_gaps.hpp"
 
 namespace ostraka {
 namespace {
@@ -137,12 +138,12 @@ const FlatPiece* Backdrop::table(double extent) const {
     return best;
 }
 
-Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, double least,
-                       bool merged) {
+Backdrop find_backdrop(const PointCloud& scan, const BackdropSettings& settings) {
+    const double sampling = settings.sampling;
     Backdrop backdrop;
-    backdrop.slack = std::max(sampling, kNoiseSlack * noise);
-    const PointCloud coarse = merged ? thinned(seen_from_afar(scan), kCoarse * sampling)
-                                     : thinned(scan, kCoarse * sampling);
+    backdrop.slack = std::max(sampling, kNoiseSlack * settings.noise.deviation);
+    const PointCloud coarse = settings.merged ? thinned(seen_from_afar(scan), kCoarse * sampling)
+                                              : thinned(scan, kCoarse * sampling);
     if (coarse.size() < 3) return backdrop;
     PatchSettings patches;
     patches.sampling = kCoarse * sampling;
@@ -151,12 +152,23 @@ Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, do
     planes.tolerance = std::max(0.25, backdrop.slack / patches.sampling);
     planes.min_points = 30;
     std::vector<PlanePiece> pieces = find_planes(coarse, patches, planes);
-    if (merged) {
+    if (settings.merged) {
         for (PlanePiece& piece : pieces) turn_to_front(piece, coarse);
     }
     for (const PlanePiece& piece : pieces) {
         FlatPiece flat = with_surface(piece, pieces, coarse, sampling, backdrop.slack);
-        if (flat.extent >= least) backdrop.pieces.push_back(std::move(flat));
+        if (flat.extent < settings.least) continue;
+        if (flat.last || settings.merged || flat.extent < settings.wall) {
+            backdrop.pieces.push_back(std::move(flat));
+            continue;
+        }
+        for (PlanePiece& part : part_at_gaps(piece, scan, settings.noise.pitch, backdrop.slack)) {
+            FlatPiece closer = flat;
+            closer.T_piece_cloud = part.T_cloud_piece.inverse(Eigen::Isometry);
+            closer.extent = part.extents.maxCoeff();
+            closer.plane = std::move(part);
+            backdrop.pieces.push_back(std::move(closer));
+        }
     }
     return backdrop;
 }

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "ostraka/cloud/range_smoothing.hpp"
 #include "ostraka/segmentation/plane_pieces.hpp"
 
 namespace ostraka {
@@ -32,13 +33,18 @@ struct Backdrop {
     const FlatPiece* table(double extent) const;
 };
 
-/// @param scan      finite points of any density; viewpoint set, unless it is merged.
-/// @param merged    of several views, or nobody knows from where: then most of the scan lies in
-///                  front of a table.
-/// @param sampling  distance that details have; pieces are found at several times that.
-/// @param noise     deviation of its depth.
-/// @param least     extent of the smallest surface of interest.
-Backdrop find_backdrop(const PointCloud& scan, double sampling, double noise, double least,
-                       bool merged = false);
+struct BackdropSettings {
+    double sampling = 0.0;  ///< distance that details have; pieces are found at several times that
+    RangeNoise noise;       ///< of the scan; zeros where it is merged
+    double least = 0.0;     ///< extent of the smallest surface of interest
+    double wall = 0.0;      ///< extent beyond which a surface is nobody's face. The tops of boxes
+                            ///< side by side look as large from afar: what extends so far is parted
+                            ///< at its gaps (surface_gaps.hpp)
+    bool merged = false;    ///< of several views, or nobody knows from where: then most of the scan
+                            ///< lies in front of a table, and no gap is looked for
+};
+
+/// @param scan  finite points of any density; viewpoint set, unless it is merged.
+Backdrop find_backdrop(const PointCloud& scan, const BackdropSettings& settings);
 
 }  // namespace ostraka

@@ -148,11 +148,14 @@ std::optional<TablePlane> table_plane(const FlatPiece* table) {
 
 Scan prepare_merged(const PointCloud& valid, double sampling, double model_diameter,
                     const RecognitionSettings& settings) {
+    const double wall_extent = kWallExtent * model_diameter;
     Backdrop backdrop;
     if (settings.remove_plane) {
-        backdrop = find_backdrop(valid, sampling, 0.0, kSmallestExtent * model_diameter, true);
+        backdrop = find_backdrop(valid, {.sampling = sampling,
+                                         .least = kSmallestExtent * model_diameter,
+                                         .wall = wall_extent,
+                                         .merged = true});
     }
-    const double wall_extent = kWallExtent * model_diameter;
     const FlatPiece* table = backdrop.table(wall_extent);
     PointCloud cloud = resample(sort_points(valid, backdrop, table, wall_extent).objects, sampling);
     cloud.normals = estimate_normals_within(cloud, kNormalRadius * sampling);
@@ -192,13 +195,15 @@ Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
     if (!settings.viewpoint_known || !settings.viewpoints.empty()) {
         return prepare_merged(valid, sampling, model_diameter, settings);
     }
+    const double wall_extent = kWallExtent * model_diameter;
     Backdrop backdrop;
     const RangeNoise noise = measure_range_noise(valid, sampling);
     if (settings.remove_plane) {
-        backdrop =
-            find_backdrop(valid, sampling, noise.deviation, kSmallestExtent * model_diameter);
+        backdrop = find_backdrop(valid, {.sampling = sampling,
+                                         .noise = noise,
+                                         .least = kSmallestExtent * model_diameter,
+                                         .wall = wall_extent});
     }
-    const double wall_extent = kWallExtent * model_diameter;
     const FlatPiece* table = backdrop.table(wall_extent);
     const Sorted sorted = sort_points(valid, backdrop, table, wall_extent);
     PointCloud cloud = at_density(sorted.objects, sampling, noise.pitch);

@@ -97,8 +97,9 @@ void SceneSearch::propose_by_faces() {
     // Strips that are too narrow for the search for tables and walls: the rim of a bin is no plate.
     for (const FlatFace& face : faces) {
         for (const std::uint32_t i : face.indices) {
-            scan_.plane_extents[i] =
-                std::max(scan_.plane_extents[i], static_cast<float>(face.extent));
+            float& extent = scan_.plane_extents[i];
+            const auto own = static_cast<float>(face.extent);
+            extent = extent > 0.0F ? std::min(extent, own) : own;
         }
     }
     parallel_for(probes_.size(), [&](std::size_t m) {
