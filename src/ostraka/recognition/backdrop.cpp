@@ -6,7 +6,6 @@
 
 #include "ostraka/cloud/normals.hpp"
 #include "ostraka/cloud/resample.hpp"
-#include "ostraka/recognition/surface_gaps.hpp"
 
 namespace ostraka {
 namespace {
@@ -123,7 +122,9 @@ double Backdrop::extent_at(const Vec3f& point) const {
         const double margin = kCoarse * slack;
         if (std::abs(at.x()) < 0.5 * piece.plane.extents.x() + margin &&
             std::abs(at.y()) < 0.5 * piece.plane.extents.y() + margin) {
-            extent = piece.extent;
+            const double here =
+                piece.extents ? piece.extents->at(point.cast<double>()) : piece.extent;
+            extent = std::max(extent, std::min(here, piece.extent));
         }
     }
     return extent;
@@ -158,17 +159,11 @@ Backdrop find_backdrop(const PointCloud& scan, const BackdropSettings& settings)
     for (const PlanePiece& piece : pieces) {
         FlatPiece flat = with_surface(piece, pieces, coarse, sampling, backdrop.slack);
         if (flat.extent < settings.least) continue;
-        if (flat.last || settings.merged || flat.extent < settings.wall) {
-            backdrop.pieces.push_back(std::move(flat));
-            continue;
+        if (!flat.last && !settings.merged && flat.extent > settings.wall &&
+            settings.noise.pitch > 0.0) {
+            flat.extents.emplace(piece, scan, settings.noise.pitch, backdrop.slack);
         }
-        for (PlanePiece& part : part_at_gaps(piece, scan, settings.noise.pitch, backdrop.slack)) {
-            FlatPiece closer = flat;
-            closer.T_piece_cloud = part.T_cloud_piece.inverse(Eigen::Isometry);
-            closer.extent = part.extents.maxCoeff();
-            closer.plane = std::move(part);
-            backdrop.pieces.push_back(std::move(closer));
-        }
+        backdrop.pieces.push_back(std::move(flat));
     }
     return backdrop;
 }

@@ -3,9 +3,11 @@
 // thinned scan, as nothing else needs to be done with the many points on them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "ostraka/cloud/range_smoothing.hpp"
+#include "ostraka/recognition/surface_extents.hpp"
 #include "ostraka/segmentation/plane_pieces.hpp"
 
 namespace ostraka {
@@ -17,8 +19,10 @@ struct FlatPiece {
     double extent = 0.0;  ///< of the surface it is part of, scan's unit: coplanar pieces are one
                           ///< surface, seen between the objects before it, where hardly anything of
                           ///< the scan lies behind them (the tops of two equal boxes are not)
-    bool last = false;    ///< hardly anything of the scan lies behind it
-    double share = 0.0;   ///< of the scan's surface, that of coplanar pieces included
+    std::optional<SurfaceExtents> extents;  ///< around each place, no more than `extent`; none: the
+                                            ///< same everywhere
+    bool last = false;                      ///< hardly anything of the scan lies behind it
+    double share = 0.0;  ///< of the scan's surface, that of coplanar pieces included
 };
 
 struct Backdrop {
@@ -37,11 +41,11 @@ struct BackdropSettings {
     double sampling = 0.0;  ///< distance that details have; pieces are found at several times that
     RangeNoise noise;       ///< of the scan; zeros where it is merged
     double least = 0.0;     ///< extent of the smallest surface of interest
-    double wall = 0.0;      ///< extent beyond which a surface is nobody's face. The tops of boxes
-                            ///< side by side look as large from afar: what extends so far is parted
-                            ///< at its gaps (surface_gaps.hpp)
+    double wall = 0.0;      ///< extent beyond which a surface is nobody's face. From afar the tops
+                            ///< of boxes side by side look as large: what extends so far, and has
+                            ///< something behind, is looked at more closely
     bool merged = false;    ///< of several views, or nobody knows from where: then most of the scan
-                            ///< lies in front of a table, and no gap is looked for
+                            ///< lies in front of a table, and nothing is looked at closely
 };
 
 /// @param scan  finite points of any density; viewpoint set, unless it is merged.
