@@ -27,13 +27,13 @@ def read(paths):
     return rows[0][:-1], numbers[:, :-1], numbers[:, -1]
 
 
-def fit(features, right, given):
+def fit(features, right, given, center):
     """Newton's method on the logistic loss; the first feature is the constant and has no prior. Each weight is
-    held to zero in units of its feature's spread; what is not NaN in `given` is not fitted."""
+    held to `center` in units of its feature's spread; what is not NaN in `given` is not fitted."""
     fixed = ~numpy.isnan(given)
-    weights = numpy.where(fixed, given, 0.0)
+    weights = numpy.where(fixed, given, center)
     if not fixed.all():
-        weights[~fixed] = fit_others(features[:, ~fixed], right, features[:, fixed] @ given[fixed])
+        weights[~fixed] += fit_others(features[:, ~fixed], right, features @ weights)
     return weights
 
 
@@ -72,6 +72,8 @@ def main():
     parser.add_argument("csv", nargs="+")
     parser.add_argument("--without", action="append", default=[], help="feature that gets no weight")
     parser.add_argument("--fix", action="append", default=[], metavar="FEATURE=WEIGHT", help="not fitted")
+    parser.add_argument("--center", help="weights, separated by commas, that few examples leave as they are "
+                        "(default: zero)")
     parser.add_argument("--weights", help="show what these do instead: numbers separated by commas")
     options = parser.parse_args()
     sets = [read(path) for path in options.csv]
@@ -80,14 +82,16 @@ def main():
     given = numpy.array([float(fixed.get(name, "nan")) for name in names])
     if options.weights:
         given = numpy.array(options.weights.split(","), dtype=float)
+    center = numpy.array(options.center.split(","), dtype=float) if options.center else numpy.zeros(len(names))
     data = [(features, right) for _, features, right in sets]
     for i, (features, right) in enumerate(data):
         others = [d for k, d in enumerate(data) if k != i] or data
-        weights = fit(numpy.vstack([f for f, _ in others]), numpy.hstack([r for _, r in others]), given)
+        weights = fit(numpy.vstack([f for f, _ in others]), numpy.hstack([r for _, r in others]),
+                      given, center)
         show(options.csv[i], probability(weights, features), right)
     features = numpy.vstack([f for f, _ in data])
     right = numpy.hstack([r for _, r in data])
-    weights = fit(features, right, given)
+    weights = fit(features, right, given, center)
     show("all", probability(weights, features), right)
     print("\nfeature      weight  typical of right reports")
     for k, name in enumerate(names):

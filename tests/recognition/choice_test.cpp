@@ -75,26 +75,47 @@ TEST(Choose, OfPosesOfOneModelAtOnePlaceTheOneWhoseDepthsFitBest) {
     EXPECT_EQ(chosen_of({surer, doubtful}, 0.5), (std::vector<std::size_t>{0}));
 }
 
-TEST(BestRival, IsTheOtherModelThatExplainsMostOfTheSame) {
-    std::vector<Verified> candidates = {candidate(0.99, 0, 100), candidate(0.9, 20, 100),
-                                        candidate(0.9, 0, 100), candidate(0.999, 70, 170)};
-    const auto rival_of_first = [&] {
+class RivalsOfTheFirst : public ::testing::Test {
+  protected:
+    std::vector<Verified> candidates_ = {candidate(0.99, 0, 100), candidate(0.9, 0, 100),
+                                         candidate(0.8, 20, 120), candidate(0.999, 70, 170)};
+    Rivals rivals() const {
         std::vector<const Verified*> pointers;
-        for (const Verified& v : candidates) pointers.push_back(&v);
-        return best_rival(candidates[0], pointers);
-    };
-    EXPECT_EQ(rival_of_first().value, 0.0);  // all are poses of one model
-    candidates[1].hypothesis.model = 1;
-    candidates[3].hypothesis.model = 3;  // shares too little
-    EXPECT_EQ(rival_of_first().number, 1U);
-    // log(0.1) 80 / (log(0.01) 100)
-    EXPECT_NEAR(rival_of_first().value, 0.4, 1e-12);
-    candidates[2].hypothesis.model = 2;
-    EXPECT_EQ(rival_of_first().number, 2U);
-    EXPECT_NEAR(rival_of_first().value, 0.5, 1e-12);
-    candidates[2].confidence = 0.9999;
-    EXPECT_EQ(rival_of_first().value, 1.0);  // of one that explains more, too
-    EXPECT_EQ(best_rival(candidates[0], {}).value, 0.0);
+        for (const Verified& v : candidates_) pointers.push_back(&v);
+        return rivals_of(candidates_[0], pointers);
+    }
+};
+
+TEST_F(RivalsOfTheFirst, AreNotPosesOfItsOwnModel) {
+    EXPECT_EQ(rivals().odds, 0.0);
+    EXPECT_EQ(rivals_of(candidates_[0], {}).odds, 0.0);
+}
+
+TEST_F(RivalsOfTheFirst, AreTheOtherModelsThatExplainTheSameAddedUp) {
+    candidates_[1].hypothesis.model = 1;
+    candidates_[3].hypothesis.model = 3;  // shares too little
+    EXPECT_NEAR(rivals().odds, 9.0, 1e-9);
+    EXPECT_EQ(rivals().likeliest, 1U);
+    candidates_[2].hypothesis.model = 2;
+    EXPECT_NEAR(rivals().odds, 9.0 + 4.0, 1e-9);
+    EXPECT_EQ(rivals().likeliest, 1U);
+    candidates_[2].hypothesis.model = 1;  // two poses of one model: the better one
+    EXPECT_NEAR(rivals().odds, 9.0, 1e-9);
+}
+
+TEST_F(RivalsOfTheFirst, CountHardlyWhereTheyLeaveMuchUnexplained) {
+    candidates_[1] = candidate(0.9, 0, 95);
+    candidates_[1].hypothesis.model = 1;
+    EXPECT_NEAR(rivals().odds, 9.0 * std::exp(-1.0), 1e-9);
+    candidates_[1] = candidate(0.9, 0, 50);
+    candidates_[1].hypothesis.model = 1;
+    EXPECT_LT(rivals().odds, 0.001);
+}
+
+TEST_F(RivalsOfTheFirst, HaveFiniteOddsHoweverSureTheyAre) {
+    candidates_[1].confidence = 1.0;
+    candidates_[1].hypothesis.model = 1;
+    EXPECT_TRUE(std::isfinite(rivals().odds));
 }
 
 // The value that choose() maximizes, of a set without conflicts; -1 of others.

@@ -29,6 +29,7 @@ class Wall {
         }
     }
     std::size_t solid() const { return solid_contradiction(map_, window_, verdicts_); }
+    std::size_t blank() const { return solid_blank(map_, window_, verdicts_); }
     std::size_t hollow() const { return hollow_contradiction(map_, window_, verdicts_, through_); }
 
   private:
@@ -59,6 +60,18 @@ TEST(SolidContradiction, CountsTheInsideOfPiecesButNoLines) {
     wall.fill(10, 6, 1, 1,
               CellVerdict::missing);  // says nothing: none of the nine around it counts
     EXPECT_EQ(wall.solid(), 2U * 3U);
+}
+
+TEST(SolidBlank, CountsTheInsideOfPiecesThatWereNotMeasured) {
+    Wall wall;
+    EXPECT_EQ(wall.blank(), 0U);
+    wall.fill(2, 2, 2, 20, CellVerdict::missing);  // a line, two cells wide: a shadow's rim
+    EXPECT_EQ(wall.blank(), 0U);
+    wall.fill(8, 4, 7, 5, CellVerdict::missing);
+    EXPECT_EQ(wall.blank(), 5U * 3U);
+    EXPECT_EQ(wall.solid(), 0U);
+    wall.fill(10, 6, 1, 1, CellVerdict::unsure);  // what can't be judged is not blank
+    EXPECT_EQ(wall.blank(), 2U * 3U);
 }
 
 TEST(HollowContradiction, CountsTheInsideOfAHoleWithAWall) {

@@ -166,6 +166,13 @@ TEST(Outline, OfTheFloorOfAChannelIsConfirmedInOneDirectionOnly) {
     EXPECT_LT(test.outline().ended, 0.1 * FromBelow(testing::plate_model()).outline().ended);
 }
 
+TEST(Outline, WhereSomethingNearerBeginsJustAtItsEndItIsFenced) {
+    EXPECT_GT(FromBelow(tray()).outline().fenced, 0.9);
+    EXPECT_NEAR(FromBelow(channel()).outline().fenced, kLength / (kLength + kWidth), 0.06);
+    EXPECT_EQ(FromBelow(testing::plate_model()).outline().fenced, 0.0);
+    EXPECT_LT(FromBelow(behind()).outline().fenced, 0.1);  // which hides some of it, too
+}
+
 TEST(Outline, WhereTheSurfaceBendsAwayAFaceIsMissing) {
     const FromBelow test(pyramid());
     // Beside a crease normals are of both sides: some of it seems level.

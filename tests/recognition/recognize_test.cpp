@@ -298,9 +298,12 @@ TEST(Recognize, AModelThatAnotherMatchesAsWellIsLessSure) {
     };
     ASSERT_EQ(sure.objects.size(), 1U);
     EXPECT_LT(rivalry(sure.objects[0]), 0.5);
+    EXPECT_GT(sure.objects[0].confidence, 0.9);
     ASSERT_GE(doubtful.objects.size(), 1U);
     const RecognizedObject& either = doubtful.objects[0];
-    EXPECT_GT(rivalry(either), 0.9);
+    // Nearly half each: neither model's odds differ much.
+    EXPECT_LT(either.confidence, 0.6);
+    EXPECT_GT(either.confidence, 0.4);
     EXPECT_EQ(either.rival, either.model == "twin" ? "corner" : "twin");
     EXPECT_LT(either.confidence, sure.objects[0].confidence);
     EXPECT_DOUBLE_EQ(either.confidence, doubtful.judge.confidence(either.features));

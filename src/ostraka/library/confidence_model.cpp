@@ -7,8 +7,9 @@ namespace ostraka {
 namespace {
 
 constexpr std::array<std::string_view, kFeatures> kNames = {
-    "constant", "clearness", "surplus", "turned", "visible", "area",  "cells",  "grip", "open",
-    "level",    "folded",    "joined",  "ended",  "sunk",    "solid", "hollow", "rival"};
+    "constant", "clearness", "surplus", "turned", "visible", "area",   "cells",
+    "grip",     "open",      "level",   "folded", "joined",  "fenced", "ended",
+    "sunk",     "solid",     "blank",   "hollow", "rival"};
 
 }  // namespace
 
@@ -22,20 +23,22 @@ double ConfidenceModel::confidence(const Features& features) const {
     return 1.0 / (1.0 + std::exp(-logit));
 }
 
-// turned, visible, area and level tell nothing more. sunk and hollow are given: right reports
-// hardly ever have them, so that any weight fits. So is joined: fitted it is -1 to -4, at which
-// other weights only make up for it; at -8 a few wrong reports fewer, and as many right ones.
+// turned, visible, area and level tell nothing more. rival is what exclusion says, not fitted (left
+// free it is -0.9). sunk and hollow are given: right reports hardly ever have them, so that any
+// weight fits. So is joined: fitted it is -1 to -4, at which other weights only make up for it; at
+// -8 a few wrong reports fewer, and as many right ones.
 const ConfidenceModel& general_confidence() {
-    static const ConfidenceModel model{.weights = {-7.36, 3.87, -2.3, 0.0, 0.0, 0.0, 3.24, 3.07,
-                                                   -12.72, 0.0, -35.8, -8.0, 2.21, -300.0, -2.71,
-                                                   -3.7, -2.47}};
+    static const ConfidenceModel model{.weights = {-6.61, 1.97, -2.18, 0.0, 0.0, 0.0, 4.28, 2.52,
+                                                   -17.28, 0.0, -43.2, -8.0, -3.75, 2.13, -300.0,
+                                                   -3.17, -0.8, -3.7, -1.0}};
     return model;
 }
 
 // Nothing is known of outlines; clearness told nothing.
 const ConfidenceModel& merged_confidence() {
     static const ConfidenceModel model{.weights = {-6.1, 0.0, -1.9, -19.6, 3.65, 1.9, -0.7, 4.3,
-                                                   0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.75}};
+                                                   0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                                                   -1.0}};
     return model;
 }
 

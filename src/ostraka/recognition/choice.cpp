@@ -3,16 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace ostraka {
 namespace {
 
-constexpr double kMaxShared = 0.35;   // of the smaller support of two that may stand together
-constexpr double kSamePlace = 0.7;    // of the smaller support of two poses at the same place
-constexpr double kSamePiece = 0.5;    // of the smaller support of rivals
-constexpr double kAsMuch = 0.9;       // of the explained value of another pose of the model
-constexpr double kLeastDoubt = 1e-3;  // what is surer is as sure
-constexpr int kMaxSteps = 200'000;    // of branch and bound, a group of conflicting hypotheses
+constexpr double kMaxShared = 0.35;    // of the smaller support of two that may stand together
+constexpr double kSamePlace = 0.7;     // of the smaller support of two poses at the same place
+constexpr double kSamePiece = 0.5;     // of the smaller support of rivals
+constexpr double kUnexplained = 20.0;  // logits that a rival loses with what it leaves unexplained:
+                                       // log loss is flat from 10 to 40 (boxy parts in bins)
+constexpr double kSurest = 1.0 - 1e-9;  // a confidence whose odds are finite
+constexpr double kAsMuch = 0.9;         // of the explained value of another pose of the model
+constexpr double kLeastDoubt = 1e-3;    // what is surer is as sure
+constexpr int kMaxSteps = 200'000;      // of branch and bound, a group of conflicting hypotheses
 
 std::size_t shared_cells(const Verified& a, const Verified& b) {
     if (a.cells.empty() || b.cells.empty()) return 0;
@@ -116,6 +120,14 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<std::vector<bo
     return groups;
 }
 
+// @param support  cells of the piece that it may explain.
+double rival_odds(const Verified& v, std::size_t support) {
+    const double share =
+        std::min(1.0, static_cast<double>(v.support) / static_cast<double>(support));
+    const double confidence = std::min(v.confidence, kSurest);
+    return confidence / (1.0 - confidence) * std::exp(-kUnexplained * (1.0 - share));
+}
+
 // The best choice within a group of conflicting candidates.
 std::vector<std::size_t> best_of_group(const std::vector<std::size_t>& group,
                                        const std::vector<double>& all_values,
@@ -152,16 +164,22 @@ bool in_conflict(const Verified& a, const Verified& b) {
     return shared_support(a, b) > kMaxShared;
 }
 
-Rival best_rival(const Verified& v, std::span<const Verified* const> candidates) {
-    Rival best;
-    const double own = explained_value(v);
-    for (std::size_t i = 0; i < candidates.size() && own > 0.0; ++i) {
+Rivals rivals_of(const Verified& v, std::span<const Verified* const> candidates) {
+    std::map<std::uint32_t, double> odds_of_model;
+    Rivals rivals;
+    double most = 0.0;
+    for (std::size_t i = 0; i < candidates.size() && v.support > 0; ++i) {
         const Verified& other = *candidates[i];
         if (other.hypothesis.model == v.hypothesis.model) continue;
-        const double value = std::min(1.0, explained_value(other) / own);
-        if (value > best.value && shared_support(v, other) > kSamePiece) best = {i, value};
+        const double odds = rival_odds(other, v.support);
+        double& of_model = odds_of_model[other.hypothesis.model];
+        if (odds <= of_model || shared_support(v, other) <= kSamePiece) continue;
+        of_model = odds;
+        if (odds > most) rivals.likeliest = i;
+        most = std::max(most, odds);
     }
-    return best;
+    for (const auto& [model, odds] : odds_of_model) rivals.odds += odds;
+    return rivals;
 }
 
 std::vector<std::size_t> choose(std::span<const Verified* const> candidates,

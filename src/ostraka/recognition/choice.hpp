@@ -27,17 +27,18 @@ double shared_support(const Verified& a, const Verified& b);
 /// Whether they explain too much of the same cells to stand together.
 bool in_conflict(const Verified& a, const Verified& b);
 
-/// The hypothesis of another model that explains best what `v` explains.
-struct Rival {
-    std::size_t number = 0;  ///< of the candidates
-    double value = 0.0;  ///< its explained_value(), as a share of that of `v`, at most 1; 0: none
+/// What of other models explains the same as a hypothesis.
+struct Rivals {
+    std::size_t likeliest = 0;  ///< of the candidates; of no meaning where `odds` is 0
+    double odds = 0.0;  ///< sum over the other models: how much likelier one of them is than none
 };
 
-/// A model that isn't in the scan often explains a piece of it no better than others do: what is
-/// told apart clearly is much more often right (the ratio test of D. G. Lowe, IJCV 2004, for
-/// objects).
-/// @param candidates  `v` may be among them.
-Rival best_rival(const Verified& v, std::span<const Verified* const> candidates);
+/// Only one model can be what a piece of a scan shows. Where others would be as sure of it, a
+/// hypothesis with the odds o has the probability o / (1 + o + odds), not o / (1 + o): two that
+/// nobody can tell apart have half each. A rival that leaves some of the piece unexplained counts
+/// less, since something else would have to be there besides.
+/// @param candidates  `v` may be among them. Of each other model the pose that counts most counts.
+Rivals rivals_of(const Verified& v, std::span<const Verified* const> candidates);
 
 /// Of the hypotheses at or above `min_confidence` the set with the greatest sum of
 /// explained_value(), no two of which explain more than a third of the same cells. Of

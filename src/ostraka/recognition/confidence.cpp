@@ -11,6 +11,8 @@ constexpr std::size_t kMinSupport = 40;  // cells
 constexpr double kHardlyVisible = 0.01;
 constexpr double kEnoughVisible = 0.5;
 constexpr double kMostSurplus = 2.0;
+constexpr double kOftenFenced =
+    0.5;  // in a heap up to so much of an outline has something before it
 constexpr double kLeastNoise = 0.1;  // sampling distances
 
 }  // namespace
@@ -41,9 +43,11 @@ Features features_of(const Verified& v) {
     set(Feature::level, v.outline.level);
     set(Feature::folded, v.outline.folded);
     set(Feature::joined, v.outline.joined);
+    set(Feature::fenced, std::max(0.0, v.outline.fenced - kOftenFenced));
     set(Feature::ended, std::log10(1.0 + v.outline.ended));
     set(Feature::sunk, v.sunk);
     set(Feature::solid, std::log10(1.0 + static_cast<double>(v.solid)));
+    set(Feature::blank, std::log10(1.0 + static_cast<double>(v.blank)));
     set(Feature::hollow, std::log10(1.0 + static_cast<double>(v.hollow)));
     return features;
 }

@@ -29,6 +29,22 @@ struct Piece {
     bool enclosed = true;            // by support
 };
 
+// Cells of which `holds`, as it does of all eight around them.
+template <typename Predicate>
+std::size_t inside_pieces(const RangeMap& ranges, std::span<const std::uint32_t> window,
+                          std::span<const CellVerdict> verdicts, Predicate holds) {
+    if (window.empty()) return 0;
+    const VerdictImage image(ranges, window, verdicts);
+    return static_cast<std::size_t>(
+        std::count_if(window.begin(), window.end(), [&](std::uint32_t cell) {
+            for (int n = 0; n < 9; ++n) {
+                if (!holds(image.at(image.u(cell) + n % 3 - 1, image.v(cell) + n / 3 - 1)))
+                    return false;
+            }
+            return true;
+        }));
+}
+
 class Holes {
   public:
     Holes(const VerdictImage& image, std::span<const std::uint32_t> window,
@@ -104,16 +120,13 @@ class Holes {
 
 std::size_t solid_contradiction(const RangeMap& ranges, std::span<const std::uint32_t> window,
                                 std::span<const CellVerdict> verdicts) {
-    if (window.empty()) return 0;
-    const VerdictImage image(ranges, window, verdicts);
-    return static_cast<std::size_t>(
-        std::count_if(window.begin(), window.end(), [&](std::uint32_t cell) {
-            for (int n = 0; n < 9; ++n) {
-                if (!contradicts(image.at(image.u(cell) + n % 3 - 1, image.v(cell) + n / 3 - 1)))
-                    return false;
-            }
-            return true;
-        }));
+    return inside_pieces(ranges, window, verdicts, contradicts);
+}
+
+std::size_t solid_blank(const RangeMap& ranges, std::span<const std::uint32_t> window,
+                        std::span<const CellVerdict> verdicts) {
+    return inside_pieces(ranges, window, verdicts,
+                         [](CellVerdict verdict) { return verdict == CellVerdict::missing; });
 }
 
 std::size_t hollow_contradiction(const RangeMap& ranges, std::span<const std::uint32_t> window,

@@ -17,6 +17,13 @@ namespace ostraka {
 std::size_t solid_contradiction(const RangeMap& ranges, std::span<const std::uint32_t> window,
                                 std::span<const CellVerdict> verdicts);
 
+/// Cells where nothing was measured, nor in the eight around them, although the model's surface
+/// there faces the sensor and is in no shadow. Sensors fail in specks and along edges; in a piece
+/// they do where the surface is dark or shines, or isn't there.
+/// @param ranges, window, verdicts  as above.
+std::size_t solid_blank(const RangeMap& ranges, std::span<const std::uint32_t> window,
+                        std::span<const CellVerdict> verdicts);
+
 /// Cells that the model covers and that are in holes of the scan's surface: nothing was measured
 /// there, or something farther, as in the four beside them. A hole is surrounded by what agrees
 /// with the model, and in some cells of it something farther is seen: its wall. What a sensor fails

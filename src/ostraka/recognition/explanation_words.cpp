@@ -20,21 +20,23 @@ struct FeatureFacts {
     double typical;
 };
 // Medians of the right reports that the general weights were learned from.
-constexpr std::array<FeatureFacts, 17> kFacts = {{{"constant", "", 1.0},
-                                                  {"clearness", "agreement", 0.971},
+constexpr std::array<FeatureFacts, 19> kFacts = {{{"constant", "", 1.0},
+                                                  {"clearness", "agreement", 0.961},
                                                   {"surplus", "fit", 0.0},
-                                                  {"turned", "fit", 0.028},
-                                                  {"visible", "visible", 1.7},
-                                                  {"area", "size", 1.351},
-                                                  {"cells", "size", 1.654},
-                                                  {"grip", "grip", 0.613},
-                                                  {"open", "outline", 0.012},
-                                                  {"level", "outline", 0.015},
+                                                  {"turned", "fit", 0.02},
+                                                  {"visible", "visible", 1.699},
+                                                  {"area", "size", 1.386},
+                                                  {"cells", "size", 1.709},
+                                                  {"grip", "grip", 0.424},
+                                                  {"open", "outline", 0.004},
+                                                  {"level", "outline", 0.014},
                                                   {"folded", "outline", 0.0},
                                                   {"joined", "outline", 0.0},
-                                                  {"ended", "outline", 1.870},
+                                                  {"fenced", "outline", 0.0},
+                                                  {"ended", "outline", 1.812},
                                                   {"sunk", "sunk", 0.0},
                                                   {"solid", "contradiction", 0.0},
+                                                  {"blank", "blank", 0.0},
                                                   {"hollow", "hollow", 0.0},
                                                   {"rival", "rival", 0.0}}};
 
@@ -126,6 +128,11 @@ std::string outline_words(const OutlineEvidence& outline, bool against) {
             "out of it",
             percent(outline.joined));
     }
+    constexpr double kMost = 0.5;
+    if (outline.fenced >= kMost) {
+        return fmt::format("along {} of its outline something nearer begins just where it ends",
+                           percent(outline.fenced));
+    }
     if (outline.level >= kSome) {
         return fmt::format("along {} of its outline something as high is beside it",
                            percent(outline.level));
@@ -148,10 +155,11 @@ bool worse_than_usual(std::string_view topic, const Explanation& one) {
     if (topic == "grip") return lower(Feature::grip);
     if (topic == "outline") {
         return higher(Feature::open) || higher(Feature::level) || higher(Feature::folded) ||
-               higher(Feature::joined) || lower(Feature::ended);
+               higher(Feature::joined) || higher(Feature::fenced) || lower(Feature::ended);
     }
     if (topic == "sunk") return higher(Feature::sunk);
     if (topic == "contradiction") return higher(Feature::solid);
+    if (topic == "blank") return higher(Feature::blank);
     if (topic == "hollow") return higher(Feature::hollow);
     if (topic == "rival") return higher(Feature::rival);
     return true;
@@ -185,15 +193,18 @@ std::string words_for(std::string_view topic, const Explanation& one, bool again
             "elsewhere",
             v.violation + v.backdrop, together);
     }
+    if (topic == "blank") {
+        return against ? fmt::format("nothing was measured in pieces of it: {} cells", v.blank)
+                       : "it was measured wherever it can be seen";
+    }
     if (topic == "hollow") {
         return against ? fmt::format("it covers holes of the scan's surface: {} cells", v.hollow)
                        : "the scan has no holes that it lacks";
     }
     if (topic == "rival") {
         if (one.object.rival.empty()) return "no other model explains the same";
-        const double value = one.object.features[static_cast<std::size_t>(Feature::rival)];
-        return fmt::format("{} explains the same {} as well", one.object.rival,
-                           against ? percent(value) : "only " + percent(value));
+        return against ? fmt::format("{} would explain the same about as well", one.object.rival)
+                       : fmt::format("{} explains the same much worse", one.object.rival);
     }
     return fmt::format("its {} is {}", topic, against ? "unusual" : "as usual");
 }

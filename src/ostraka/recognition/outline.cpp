@@ -100,6 +100,7 @@ struct OutlineSums {
     std::size_t silhouette = 0;  // where something is known of it
     std::size_t level = 0;       // of these
     std::size_t folded = 0;      // of these
+    std::size_t fenced = 0;      // of these
     Eigen::Matrix2d ended = Eigen::Matrix2d::Zero();
 };
 
@@ -140,6 +141,7 @@ void judge_brink(const Scan& scan, const VerdictImage& image, int u, int v,
     ++sums.silhouette;
     if (found == Beyond::level) ++sums.level;
     if (found == Beyond::folded) ++sums.folded;
+    if (found == Beyond::nearer || found == Beyond::joined) ++sums.fenced;
     if (found != Beyond::ended) return;
     const Eigen::Vector2d direction = outward(image, u, v);
     sums.ended += direction * direction.transpose();
@@ -168,6 +170,7 @@ OutlineEvidence judge_outline(const Scan& scan, std::span<const std::uint32_t> w
             .level = share(sums.level, sums.silhouette, 1),
             .folded = share(sums.folded, sums.silhouette, 1),
             .joined = share(sums.joined, sums.outline, kMinOutline),
+            .fenced = share(sums.fenced, sums.silhouette, 1),
             .ended = 2.0 * std::max(0.0, directions.eigenvalues()(0))};
 }
 

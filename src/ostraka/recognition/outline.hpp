@@ -24,6 +24,9 @@ struct OutlineEvidence {
                           ///< et al., Object Partitioning using Local Convexity, CVPR 2014)
     double joined = 0.0;  ///< share of the outline, also against what hides it, where something in
                           ///< front begins at the scan's surface: it grows out of it, or touches it
+    double fenced = 0.0;  ///< share where something nearer begins: a plate on the floor of a tray
+                          ///< has walls along it. What hides an object hides some of it, too, and
+                          ///< hardly ever ends just where the object does
     double ended = 0.0;   ///< cells of outline where the scan ends, too, and something farther or
                           ///< nothing is seen; of the image's two directions in that which has
                           ///< fewer, and twice that: a stripe of a wall ends only above and below

@@ -26,8 +26,8 @@ struct RecognizedObject {
     std::string source;       ///< what proposed it: "segment" or "keypoints"
     int round = 0;            ///< of the search in which it came up, from 0
     Features features{};      ///< what the confidence comes from
-    std::string rival;        ///< the other model that explains the same best (Feature::rival says
-                              ///< how well); empty: none does
+    std::string rival;  ///< the other model that likeliest explains the same (Feature::rival says
+                        ///< how well); empty: none does
 };
 
 struct Recognition {

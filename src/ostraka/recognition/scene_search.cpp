@@ -2,6 +2,7 @@
 #include "ostraka/recognition/scene_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/recognition/choice.hpp"
@@ -257,10 +258,10 @@ std::vector<std::size_t> SceneSearch::explanation(double min_confidence) const {
 Standing SceneSearch::standing(std::size_t number) const {
     const Judged& one = judged_[number];
     Standing result{.features = one.features, .confidence = one.verified.confidence};
-    const Rival rival = best_rival(one.verified, verified());
-    if (rival.value == 0.0) return result;
-    result.rival_model = judged_[rival.number].verified.hypothesis.model;
-    result.features[static_cast<std::size_t>(Feature::rival)] = rival.value;
+    const Rivals rivals = rivals_of(one.verified, verified());
+    if (rivals.odds == 0.0) return result;
+    result.rival_model = judged_[rivals.likeliest].verified.hypothesis.model;
+    result.features[static_cast<std::size_t>(Feature::rival)] = std::log1p(rivals.odds);
     if (!too_small(one.verified)) result.confidence = confidence_model_.confidence(result.features);
     return result;
 }

@@ -23,7 +23,7 @@ struct Judged {
 struct Standing {
     Features features{};
     double confidence = 0.0;
-    std::uint32_t rival_model = kNoIndex;  ///< that explains the same best
+    std::uint32_t rival_model = kNoIndex;  ///< the likeliest that explains the same
 };
 
 class SceneSearch {

@@ -145,6 +145,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
     result.area =
         static_cast<double>(result.support) * cell_area / (shape.diameter * shape.diameter);
     result.solid = solid_contradiction(scan.ranges, window, verdicts);
+    result.blank = solid_blank(scan.ranges, window, verdicts);
     result.hollow = hollow_contradiction(scan.ranges, window, verdicts, through);
     result.outline = judge_outline(scan, window, verdicts);
     if (detail != nullptr) *detail = {window, std::move(verdicts)};

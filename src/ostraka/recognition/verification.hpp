@@ -21,6 +21,7 @@ struct Verified {
     std::size_t missing = 0;     ///< of these: nothing was measured
     std::size_t unsure = 0;      ///< of these: nothing can be said
     std::size_t solid = 0;       ///< of violation and backdrop: solid_contradiction()
+    std::size_t blank = 0;       ///< of missing: solid_blank()
     std::size_t hollow = 0;      ///< in holes of the scan's surface: hollow_contradiction()
     double sunk = 0.0;           ///< share of the silhouette that would be below the table
     OutlineEvidence outline;     ///< whether the scan's surface ends where the model does
