@@ -27,22 +27,23 @@ def read(paths):
     return rows[0][:-1], numbers[:, :-1], numbers[:, -1]
 
 
-def fit(features, right, given, center):
+def fit(features, right, given, center, hold):
     """Newton's method on the logistic loss; the first feature is the constant and has no prior. Each weight is
-    held to `center` in units of its feature's spread; what is not NaN in `given` is not fitted."""
+    held to `center` in units of its feature's spread, by `hold` where that is not zero; what is not NaN in `given`
+    is not fitted."""
     fixed = ~numpy.isnan(given)
     weights = numpy.where(fixed, given, center)
+    prior = numpy.where(center == 0.0, PRIOR, hold)
     if not fixed.all():
-        weights[~fixed] += fit_others(features[:, ~fixed], right, features @ weights)
+        weights[~fixed] += fit_others(features[:, ~fixed], right, features @ weights, prior[~fixed])
     return weights
 
 
-def fit_others(features, right, offset):
+def fit_others(features, right, offset, prior):
     spread = features.std(axis=0)
     spread[0] = 1.0
     spread[spread == 0.0] = 1.0
     x = features / spread
-    prior = numpy.full(x.shape[1], PRIOR)
     prior[0] = 1e-6
     weights = numpy.zeros(x.shape[1])
     for _ in range(200):
@@ -74,6 +75,8 @@ def main():
     parser.add_argument("--fix", action="append", default=[], metavar="FEATURE=WEIGHT", help="not fitted")
     parser.add_argument("--center", help="weights, separated by commas, that few examples leave as they are "
                         "(default: zero)")
+    parser.add_argument("--hold", type=float, default=PRIOR, help="how strongly those of --center that are not zero "
+                        "hold: about as the reports that they came from count")
     parser.add_argument("--weights", help="show what these do instead: numbers separated by commas")
     options = parser.parse_args()
     sets = [read(path) for path in options.csv]
@@ -87,11 +90,11 @@ def main():
     for i, (features, right) in enumerate(data):
         others = [d for k, d in enumerate(data) if k != i] or data
         weights = fit(numpy.vstack([f for f, _ in others]), numpy.hstack([r for _, r in others]),
-                      given, center)
+                      given, center, options.hold)
         show(options.csv[i], probability(weights, features), right)
     features = numpy.vstack([f for f, _ in data])
     right = numpy.hstack([r for _, r in data])
-    weights = fit(features, right, given, center)
+    weights = fit(features, right, given, center, options.hold)
     show("all", probability(weights, features), right)
     print("\nfeature      weight  typical of right reports")
     for k, name in enumerate(names):

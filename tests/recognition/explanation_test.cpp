@@ -85,9 +85,13 @@ TEST(Explanation, NamesTheModelThatExplainsTheSameAsWell) {
     test.report(test.truth());
     RecognizedObject& object = test.recognition.objects.front();
     object.rival = "bracket";
-    object.features[static_cast<std::size_t>(Feature::rival)] = 3.0;
+    object.features[static_cast<std::size_t>(Feature::rival)] = std::log(5.0);
+    object.confidence = 0.5;
     const Explanation one = test.explained().front();
-    EXPECT_TRUE(says(one, "Against it: bracket would explain the same about as well"))
+    // Odds of 5, 4 and 1: the object, its rival, neither.
+    EXPECT_TRUE(says(one,
+                     "Against it: bracket explains the same nearly as well: it is that with a "
+                     "probability of 40 %"))
         << one.verdict;
 }
 

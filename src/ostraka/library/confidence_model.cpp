@@ -28,9 +28,9 @@ double ConfidenceModel::confidence(const Features& features) const {
 // weight fits. So is joined: fitted it is -1 to -4, at which other weights only make up for it; at
 // -8 a few wrong reports fewer, and as many right ones.
 const ConfidenceModel& general_confidence() {
-    static const ConfidenceModel model{.weights = {-6.61, 1.97, -2.18, 0.0, 0.0, 0.0, 4.28, 2.52,
-                                                   -17.28, 0.0, -43.2, -8.0, -3.75, 2.13, -300.0,
-                                                   -3.17, -0.8, -3.7, -1.0}};
+    static const ConfidenceModel model{.weights = {-6.89, 2.93, -2.14, 0.0, 0.0, 0.0, 3.58, 2.79,
+                                                   -14.97, 0.0, -39.3, -8.0, -3.82, 2.21, -300.0,
+                                                   -2.78, -0.47, -3.7, -1.0}};
     return model;
 }
 

@@ -165,6 +165,12 @@ bool worse_than_usual(std::string_view topic, const Explanation& one) {
     return true;
 }
 
+// With the odds o of the object and r of its rivals: r / (1 + o + r).
+double rival_probability(const RecognizedObject& object) {
+    const double rival = object.features[static_cast<std::size_t>(Feature::rival)];
+    return (1.0 - object.confidence) * (1.0 - std::exp(-rival));
+}
+
 std::string words_for(std::string_view topic, const Explanation& one, bool against,
                       const std::string& unit) {
     const Verified& v = one.verified;
@@ -203,8 +209,9 @@ std::string words_for(std::string_view topic, const Explanation& one, bool again
     }
     if (topic == "rival") {
         if (one.object.rival.empty()) return "no other model explains the same";
-        return against ? fmt::format("{} would explain the same about as well", one.object.rival)
-                       : fmt::format("{} explains the same much worse", one.object.rival);
+        return fmt::format("{} explains the same {}: it is that with a probability of {}",
+                           one.object.rival, against ? "nearly as well" : "worse",
+                           percent(rival_probability(one.object)));
     }
     return fmt::format("its {} is {}", topic, against ? "unusual" : "as usual");
 }
