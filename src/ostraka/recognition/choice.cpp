@@ -12,7 +12,7 @@ constexpr double kMaxShared = 0.35;    // of the smaller support of two that may
 constexpr double kSamePlace = 0.7;     // of the smaller support of two poses at the same place
 constexpr double kSamePiece = 0.5;     // of the smaller support of rivals
 constexpr double kUnexplained = 20.0;  // logits that a rival loses with what it leaves unexplained:
-                                       // log loss is flat from 10 to 40 (boxy parts in bins)
+                                       // log loss is flat from 10 to 50 (boxy parts in bins)
 constexpr double kSurest = 1.0 - 1e-9;  // a confidence whose odds are finite
 constexpr double kAsMuch = 0.9;         // of the explained value of another pose of the model
 constexpr double kLeastDoubt = 1e-3;    // what is surer is as sure
