@@ -177,6 +177,18 @@ TEST(Outline, WhereSomethingNearerBeginsJustAtItsEndItIsFenced) {
     EXPECT_LT(FromBelow(behind()).outline().fenced, 0.1);  // which hides some of it, too
 }
 
+TEST(Outline, WhatIsFencedCountsBeyondHalfOfIt) {
+    const auto fenced = [](double share) {
+        Verified v;
+        v.support = 1000;
+        v.outline.fenced = share;
+        return features_of(v)[static_cast<std::size_t>(Feature::fenced)];
+    };
+    EXPECT_EQ(fenced(0.0), 0.0);
+    EXPECT_EQ(fenced(kOftenFenced), 0.0);
+    EXPECT_DOUBLE_EQ(fenced(1.0), 1.0 - kOftenFenced);
+}
+
 TEST(Outline, WhereTheSurfaceBendsAwayAFaceIsMissing) {
     const FromBelow test(pyramid());
     // Beside a crease normals are of both sides: some of it seems level.

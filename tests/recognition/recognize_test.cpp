@@ -301,6 +301,7 @@ TEST(Recognize, AModelThatAnotherMatchesAsWellIsLessSure) {
     EXPECT_GT(sure.objects[0].confidence, 0.9);
     ASSERT_GE(doubtful.objects.size(), 1U);
     const RecognizedObject& either = doubtful.objects[0];
+    EXPECT_GT(rivalry(either), 0.9);
     // Nearly half each: neither model's odds differ much.
     EXPECT_LT(either.confidence, 0.6);
     EXPECT_GT(either.confidence, 0.4);

@@ -11,8 +11,6 @@ constexpr std::size_t kMinSupport = 40;  // cells
 constexpr double kHardlyVisible = 0.01;
 constexpr double kEnoughVisible = 0.5;
 constexpr double kMostSurplus = 2.0;
-constexpr double kOftenFenced =
-    0.5;  // in a heap up to so much of an outline has something before it
 constexpr double kLeastNoise = 0.1;  // sampling distances
 
 }  // namespace

@@ -6,6 +6,9 @@
 
 namespace ostraka {
 
+/// Share of an outline up to which something before it says nothing: in a heap that is usual.
+inline constexpr double kOftenFenced = 0.5;
+
 /// Too little support to say anything: such hypotheses are never reported.
 bool too_small(const Verified& verified);
 

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "ostraka/recognition/confidence.hpp"
+
 namespace ostraka {
 namespace {
 
@@ -128,8 +130,7 @@ std::string outline_words(const OutlineEvidence& outline, bool against) {
             "out of it",
             percent(outline.joined));
     }
-    constexpr double kMost = 0.5;
-    if (outline.fenced >= kMost) {
+    if (outline.fenced >= kOftenFenced) {
         return fmt::format("along {} of its outline something nearer begins just where it ends",
                            percent(outline.fenced));
     }

@@ -27,7 +27,7 @@ struct RecognizedObject {
     int round = 0;            ///< of the search in which it came up, from 0
     Features features{};      ///< what the confidence comes from
     std::string rival;  ///< the other model that likeliest explains the same (Feature::rival says
-                        ///< how well); empty: none does
+                        ///< with what odds); empty: none does
 };
 
 struct Recognition {
