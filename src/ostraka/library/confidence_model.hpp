@@ -20,6 +20,7 @@ enum class Feature : std::uint8_t {
     area,       ///< logarithm of what supports, as an area in squared diameters
     cells,      ///< logarithm of what supports, as cells of the range map
     grip,       ///< how well what supports holds the model in place; 0: a plane
+    sharpness,  ///< how much worse normals agree when the pose is moved a little
     open,       ///< share of the outline where the scan's surface goes on
     level,      ///< share of the silhouette's outline where the scan is as high beyond
     folded,     ///< share of it where the scan's surface bends away and goes on

@@ -37,6 +37,7 @@ Features features_of(const Verified& v) {
     set(Feature::area, std::log10(1.0 + 100.0 * v.area));
     set(Feature::cells, std::log10(1.0 + cells));
     set(Feature::grip, std::sqrt(v.grip));
+    set(Feature::sharpness, v.sharpness);
     set(Feature::open, v.outline.open);
     set(Feature::level, v.outline.level);
     set(Feature::folded, v.outline.folded);

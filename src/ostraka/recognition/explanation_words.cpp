@@ -22,7 +22,7 @@ struct FeatureFacts {
     double typical;
 };
 // Medians of the right reports that the general weights were learned from.
-constexpr std::array<FeatureFacts, 19> kFacts = {{{"constant", "", 1.0},
+constexpr std::array<FeatureFacts, 20> kFacts = {{{"constant", "", 1.0},
                                                   {"clearness", "agreement", 0.961},
                                                   {"surplus", "fit", 0.0},
                                                   {"turned", "fit", 0.02},
@@ -30,6 +30,7 @@ constexpr std::array<FeatureFacts, 19> kFacts = {{{"constant", "", 1.0},
                                                   {"area", "size", 1.386},
                                                   {"cells", "size", 1.709},
                                                   {"grip", "grip", 0.424},
+                                                  {"sharpness", "sharpness", 0.059},
                                                   {"open", "outline", 0.004},
                                                   {"level", "outline", 0.014},
                                                   {"folded", "outline", 0.0},
@@ -154,6 +155,7 @@ bool worse_than_usual(std::string_view topic, const Explanation& one) {
     if (topic == "visible") return lower(Feature::visible);
     if (topic == "size") return lower(Feature::cells) || lower(Feature::area);
     if (topic == "grip") return lower(Feature::grip);
+    if (topic == "sharpness") return lower(Feature::sharpness);
     if (topic == "outline") {
         return higher(Feature::open) || higher(Feature::level) || higher(Feature::folded) ||
                higher(Feature::joined) || higher(Feature::fenced) || lower(Feature::ended);
@@ -185,6 +187,10 @@ std::string words_for(std::string_view topic, const Explanation& one, bool again
     if (topic == "grip") {
         return against ? "what is seen is nearly flat or round and would fit elsewhere, too"
                        : "what is seen holds it in place in all directions";
+    }
+    if (topic == "sharpness") {
+        return against ? "moved a little, it would agree nearly as well"
+                       : "moved a little, it would agree much worse";
     }
     if (topic == "outline") return outline_words(v.outline, against);
     if (topic == "sunk") {
@@ -232,11 +238,12 @@ std::string evidence_words(const Explanation& one, bool both) {
     for (const Reason& reason : one.reasons) {
         if (is_against(reason, one) && bad.size() < kMostClauses) bad.push_back(reason.words);
     }
-    for (const std::string_view topic : {"agreement", "fit", "visible", "outline", "grip"}) {
+    for (const std::string_view topic :
+         {"agreement", "fit", "visible", "outline", "grip", "sharpness"}) {
         for (const Reason& reason : one.reasons) {
             if (reason.topic != topic || is_against(reason, one)) continue;
             // "The outline ends" and the like are worth words where they tell more than usual.
-            const bool telling = topic != "outline" && topic != "grip";
+            const bool telling = topic != "outline" && topic != "grip" && topic != "sharpness";
             if (!telling && reason.contribution < 0.0) continue;
             if (good.size() < kMostClauses) good.push_back(reason.words);
         }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ostraka/recognition/cell_check.hpp"
+#include "ostraka/recognition/sharpness.hpp"
 
 namespace ostraka {
 namespace {
@@ -158,6 +159,7 @@ Verified verify_merged(const Scan& scan, const ModelProbe& probe, const Hypothes
     result.turned /= support;
     const Eigen::SelfAdjointEigenSolver<Mat3d> scatter(normals / support, Eigen::EigenvaluesOnly);
     result.grip = 3.0 * std::max(0.0, scatter.eigenvalues()(0));
+    result.sharpness = sharpness(scan, probe, hypothesis.T_scene_model, result.cells);
     result.visible_fraction = support / static_cast<double>(result.silhouette);
     const double diameter = probe.model().shape.diameter;
     result.area = support * static_cast<double>(stride) * scan.sampling * scan.sampling /

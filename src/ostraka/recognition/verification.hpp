@@ -32,6 +32,7 @@ struct Verified {
     double turned = 0.0;         ///< mean of 1 - cosine between the normals of supporting cells
     double grip = 0.0;           ///< how well the support holds the model in place: smallest
                                  ///< eigenvalue of its normals' scatter, times 3; 0: a plane
+    double sharpness = 0.0;      ///< sharpness() of the supporting points; 0 unless merged
     double depth_fit = 0.0;  ///< sum over the silhouette of how well each cell's own depths agree:
                              ///< finer than support, to tell apart poses that are nearly equal
     double area = 0.0;       ///< of the support, across the line of sight, in diameters squared
