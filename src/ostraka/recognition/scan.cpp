@@ -13,6 +13,7 @@
 #include "ostraka/cloud/normals.hpp"
 #include "ostraka/cloud/range_smoothing.hpp"
 #include "ostraka/cloud/resample.hpp"
+#include "ostraka/cloud/surface_thickness.hpp"
 #include "ostraka/recognition/backdrop.hpp"
 #include "ostraka/recognition/surface_roughness.hpp"
 
@@ -75,6 +76,10 @@ constexpr double kSmoothTarget = 0.2;   // deviation left in each point, in samp
 constexpr double kSmoothRadius = 1.0;   // of the window, in sampling distances
 constexpr double kNormalPitches = 1.8;  // radius of the planes that normals come from, in distances
                                         // of pixels, where these are far apart: the eight around
+
+constexpr double kThicknessRadius = 3.0;    // sampling distances
+constexpr double kNormalThicknesses = 4.6;  // radius of the planes that normals of merged scans
+                                            // come from, at least
 
 constexpr double kPitchDeviation = 0.17;  // in distances of pixels; fitted to simulated scans
 
@@ -146,6 +151,12 @@ std::optional<TablePlane> table_plane(const FlatPiece* table) {
     return TablePlane{table->plane.normal, table->plane.offset};
 }
 
+// The plane of a ball that noise fills has any direction.
+double merged_normal_radius(const PointCloud& objects, double sampling) {
+    const double thickness = surface_thickness(objects, kThicknessRadius * sampling);
+    return std::max(kNormalRadius * sampling, kNormalThicknesses * thickness);
+}
+
 Scan prepare_merged(const PointCloud& valid, double sampling, double model_diameter,
                     const RecognitionSettings& settings) {
     const double wall_extent = kWallExtent * model_diameter;
@@ -157,8 +168,9 @@ Scan prepare_merged(const PointCloud& valid, double sampling, double model_diame
                                          .merged = true});
     }
     const FlatPiece* table = backdrop.table(wall_extent);
-    PointCloud cloud = resample(sort_points(valid, backdrop, table, wall_extent).objects, sampling);
-    cloud.normals = estimate_normals_within(cloud, kNormalRadius * sampling);
+    const PointCloud objects = sort_points(valid, backdrop, table, wall_extent).objects;
+    PointCloud cloud = resample(objects, sampling);
+    cloud.normals = estimate_normals_within(cloud, merged_normal_radius(objects, sampling));
     cloud = remove_invalid(cloud);
     if (backdrop.pieces.empty()) check_density(cloud, sampling);
     orient_normals(cloud);
