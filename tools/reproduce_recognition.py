@@ -6,7 +6,7 @@ goals hold. See scripts/reproduce.
 Usage: reproduce_recognition.py OSTRAKA DATA FOLDER [--only TEXT]
 
 What FOLDER holds is not made anew: delete a row's JSON file, or a library, to do so. --only: rows whose name contains
-TEXT. Scenes are evaluated from a confidence of 0.8 and counted from 0.9, the default.
+TEXT. Scenes are evaluated from a confidence of 0.8 and counted from 0.95, the default.
 """
 import json
 import shutil
@@ -15,7 +15,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-LEAST_CONFIDENCE = 0.9
+LEAST_CONFIDENCE = 0.95
 SINGLE_PART = "valve_body"
 # name -> (options of `ostraka evaluate scenes`, libraries by name). A library's half is HALF/A and HALF/B:
 # the scenes show all.
@@ -44,6 +44,7 @@ SCENES = {
                                   ["bologna_plain"]),
     "viewpoint unknown, 1 mm": ("--on drop --seed 3 --scenes 8 --noise 0.001 --viewpoint-unknown", ["bologna_plain"]),
     "viewpoint unknown, 2 mm": ("--on drop --seed 3 --scenes 8 --noise 0.002 --viewpoint-unknown", ["bologna_plain"]),
+    "viewpoint unknown, 4 mm": ("--on drop --seed 3 --scenes 8 --noise 0.004 --viewpoint-unknown", ["bologna_plain"]),
     "half unknown, heaps of parts": ("--on drop --scenes 12 --objects 10 --noise 0.3 --seed 78",
                                      ["parts/A", "parts/B", "parts_calibrated/A", "parts_calibrated/B"]),
     "half unknown, no table": ("--on random-views --scenes 96 --noise 0.3 --seed 109", ["parts/A", "parts/B"]),

@@ -33,7 +33,7 @@ inline ModelLibrary two_models() {
     return library;
 }
 
-inline RecognizedObject report_at(std::uint32_t model, double x, double confidence = 0.9) {
+inline RecognizedObject report_at(std::uint32_t model, double x, double confidence = 0.97) {
     return {.model = model == 0 ? "a" : "b",
             .model_index = model,
             .T_scene_model = shifted(x),

@@ -71,7 +71,7 @@ TEST(Explanation, OfATwinNamesTheObjectItLostTo) {
     const double diameter = library().models[kCorner].shape.diameter;
     test.report(test.truth());
     test.add(test.moved(0.1 * diameter * Vec3d::UnitX()), 0);
-    test.recognition.candidates.back().confidence = 0.9;  // enough to be reported
+    test.recognition.candidates.back().confidence = 0.97;  // enough to be reported
     const auto explained = test.explained();
     ASSERT_EQ(explained.size(), 2U);
     EXPECT_EQ(explained[1].outcome, Outcome::lost);
@@ -96,6 +96,12 @@ TEST(Explanation, NamesTheModelThatExplainsTheSameAsWell) {
                                against),
               std::string::npos)
         << one.verdict;
+    // Odds of 18, 1 and 1.
+    object.features[static_cast<std::size_t>(Feature::rival)] = std::log(2.0);
+    object.confidence = 0.9;
+    const std::string verdict = test.explained().front().verdict;
+    EXPECT_NE(verdict.find("less well: it is that with a probability of 5 %"), std::string::npos)
+        << verdict;
 }
 
 TEST(Explanation, OfWhatFloatsInFrontOfTheScanSaysThatItIsContradicted) {

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kWorthSaying = 0.3;  // logits: about 7 % of confidence where it is even
 constexpr std::size_t kMostClauses = 3;
+constexpr double kNearlyAsWell = 0.3;  // of the object's probability: that of a rival which is said
+                                       // to explain nearly as much
 
 // Features that tell of one thing, by their names, and what right reports have.
 struct FeatureFacts {
@@ -216,9 +218,11 @@ std::string words_for(std::string_view topic, const Explanation& one, bool again
     }
     if (topic == "rival") {
         if (one.object.rival.empty()) return "no other model explains the same";
+        const double probability = rival_probability(one.object);
+        const bool nearly = probability > kNearlyAsWell * one.object.confidence;
         return fmt::format("{} explains the same {}: it is that with a probability of {}",
-                           one.object.rival, against ? "nearly as well" : "worse",
-                           percent(rival_probability(one.object)));
+                           one.object.rival, nearly ? "nearly as well" : "less well",
+                           percent(probability));
     }
     return fmt::format("its {} is {}", topic, against ? "unusual" : "as usual");
 }
