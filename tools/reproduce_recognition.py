@@ -6,7 +6,7 @@ goals hold. See scripts/reproduce.
 Usage: reproduce_recognition.py OSTRAKA DATA FOLDER [--only TEXT]
 
 What FOLDER holds is not made anew: delete a row's JSON file, or a library, to do so. --only: rows whose name contains
-TEXT. Scenes are evaluated from a confidence of 0.8 and counted from 0.95, the default.
+TEXT. Scenes are evaluated from a confidence of 0.8 and counted from 0.94, the default.
 """
 import json
 import shutil
@@ -15,7 +15,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-LEAST_CONFIDENCE = 0.95
+LEAST_CONFIDENCE = 0.94
 SINGLE_PART = "valve_body"
 # name -> (options of `ostraka evaluate scenes`, libraries by name). A library's half is HALF/A and HALF/B:
 # the scenes show all.

@@ -11,7 +11,7 @@ namespace ostraka {
 /// Everything that decides what recognize() reports. Distances count sampling distances of the
 /// library.
 struct RecognitionSettings {
-    double min_confidence = 0.95;   ///< objects below it are not reported
+    double min_confidence = 0.94;   ///< objects below it are not reported
     bool viewpoint_known = true;    ///< false: the scan was merged of several, nobody knows from
                                     ///< where; then free space can't contradict a hypothesis
     std::vector<Vec3f> viewpoints;  ///< of a merged scan, library unit; empty: the cloud's own
