@@ -22,26 +22,11 @@ SceneKeypoints scene() {
     return scene_keypoints(cloud, library().settings, 3.0, 100);
 }
 
-TEST(Widen, KeepsValuesAndSquares) {
-    const std::vector<std::uint8_t>& rows = library().models[0].keypoints.rows;
-    const WideRows wide = widen(rows);
-    ASSERT_EQ(wide.values.size(), rows.size());
-    ASSERT_EQ(wide.squares.size(), rows.size() / kShotLength);
-    for (std::size_t r = 0; r < wide.squares.size(); ++r) {
-        std::int32_t sum = 0;
-        for (std::size_t i = r * kShotLength; i < (r + 1) * kShotLength; ++i) {
-            ASSERT_EQ(wide.values[i], rows[i]);
-            sum += std::int32_t{rows[i]} * std::int32_t{rows[i]};
-        }
-        ASSERT_EQ(wide.squares[r], sum);
-    }
-}
-
 TEST(SceneKeypoints, AreSpreadThinnedAndFramed) {
     const SceneKeypoints keypoints = scene();
     ASSERT_GT(keypoints.size(), 10U);
     EXPECT_LE(keypoints.size(), 100U);
-    EXPECT_EQ(keypoints.rows.squares.size(), keypoints.size());
+    EXPECT_EQ(keypoints.rows.size(), keypoints.size() * kShotLength);
     for (const Mat3f& frame : keypoints.frames) {
         EXPECT_NEAR(frame.determinant(), 1.0F, 1e-4F);
     }
@@ -60,7 +45,7 @@ TEST(KeypointIndex, AgreesWithBruteForce) {
                 std::int32_t sum = 0;
                 for (std::size_t i = 0; i < kShotLength; ++i) {
                     const std::int32_t difference =
-                        std::int32_t{keypoints.rows.values[k * kShotLength + i]} -
+                        std::int32_t{keypoints.rows[k * kShotLength + i]} -
                         std::int32_t{model.rows[r * kShotLength + i]};
                     sum += difference * difference;
                 }

@@ -39,7 +39,7 @@ std::vector<float> describe_bag(const PointCloud& cloud, const ModelLibrary& lib
                                 std::size_t most) {
     const SceneKeypoints keypoints =
         scene_keypoints(cloud, library.settings, library.settings.keypoint_spacing, most);
-    const std::vector<float> rows(keypoints.rows.values.begin(), keypoints.rows.values.end());
+    const std::vector<float> rows(keypoints.rows.begin(), keypoints.rows.end());
     return bag_of_words(rows, library.codebook);
 }
 

@@ -6,24 +6,18 @@
 #include <vector>
 
 #include "ostraka/library/model_library.hpp"
+#include "ostraka/library/row_table.hpp"
 
 namespace ostraka {
-
-/// Quantized rows widened for comparison, with their squared lengths.
-struct WideRows {
-    std::vector<std::int16_t> values;   ///< rows x kShotLength
-    std::vector<std::int32_t> squares;  ///< per row
-};
-WideRows widen(std::span<const std::uint8_t> rows);
 
 /// Rows nearest to a scene keypoint that are looked at where there is a graph.
 inline constexpr std::size_t kGraphMatches = 32;
 
 /// Local descriptors of points spread over a scan or a piece of one.
 struct SceneKeypoints {
-    std::vector<Vec3f> points;  ///< scene frame, library unit
-    std::vector<Mat3f> frames;  ///< R_scene_keypoint
-    WideRows rows;
+    std::vector<Vec3f> points;       ///< scene frame, library unit
+    std::vector<Mat3f> frames;       ///< R_scene_keypoint
+    std::vector<std::uint8_t> rows;  ///< size() rows of kShotLength: quantize_row() of SHOT
     std::size_t size() const { return points.size(); }
 };
 
@@ -63,7 +57,7 @@ class KeypointIndex {
                         std::vector<std::vector<Correspondence>>& matches) const;
 
     const ModelLibrary* library_;
-    std::vector<WideRows> rows_;             // of each model; none with a graph
+    std::vector<RowTable> rows_;             // of each model; none with a graph
     std::vector<std::uint8_t> bytes_;        // of all models, with a graph
     std::vector<std::uint32_t> first_rows_;  // of each model among bytes_, and the end
 };

@@ -54,18 +54,19 @@ float table_scale(const ModelLibrary& library, const std::vector<float>& rows, s
                   const std::function<std::vector<float>(std::span<const float>)>& distances) {
     const std::size_t count = library.entries.size();
     const std::size_t stride = 1 + count / kScaleSamples;
-    std::vector<float> nearest;
-    for (std::size_t i = 0; i < count; i += stride) {
+    constexpr float kNone = std::numeric_limits<float>::max();
+    std::vector<float> nearest((count + stride - 1) / stride, kNone);
+    parallel_for(nearest.size(), [&](std::size_t sample) {
+        const std::size_t i = sample * stride;
         const auto row = std::span<const float>(rows).subspan(i * length, length);
         const std::vector<float> all = distances(row);
-        float best = std::numeric_limits<float>::max();
         for (std::size_t j = 0; j < count; ++j) {
             const bool same_model = library.entries[i].model == library.entries[j].model;
             if (i == j || (same_model && library.models.size() > 1)) continue;
-            best = std::min(best, all[j]);
+            nearest[sample] = std::min(nearest[sample], all[j]);
         }
-        if (best < std::numeric_limits<float>::max()) nearest.push_back(best);
-    }
+    });
+    std::erase(nearest, kNone);
     if (nearest.empty()) return 1.0F;
     std::sort(nearest.begin(), nearest.end());
     return std::max(nearest[nearest.size() / 2], 1e-6F);
