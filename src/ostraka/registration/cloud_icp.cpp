@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "ostraka/base/parallel.hpp"
 #include "ostraka/cloud/normals.hpp"
 #include "ostraka/cloud/point_columns.hpp"
+#include "ostraka/registration/plane_pairs.hpp"
 
 namespace ostraka {
 
@@ -28,54 +28,10 @@ struct IcpTarget::Implementation {
 
 namespace {
 
-using Vec6d = Eigen::Matrix<double, 6, 1>;
-using Mat6d = Eigen::Matrix<double, 6, 6>;
-
-constexpr std::size_t kChunk = 256;  // source points whose sums are made together
-constexpr std::size_t kLanes = 4;
 constexpr int kLeastPairs = 6;
 constexpr double kFreeRatio = 1e-7;     // of the largest eigenvalue: below it a direction is free
 constexpr double kCoarseEnough = 1e-5;  // a step's share of the radius after which all points count
 constexpr double kPointsPerColumn = 4.0;
-
-using Double4 = double __attribute__((vector_size(32)));
-
-// Upper triangle of the normal equations, their right side, and the squares of the residuals.
-constexpr std::size_t kSums = 21 + 6 + 1;
-
-struct ChunkSums {
-    std::array<double, kSums> sums{};
-    int pairs = 0;
-};
-
-// Columns of a chunk's pairs: moved points relative to the pivot, normals, plane distances.
-struct Pairs {
-    std::array<std::array<double, kChunk>, 6> rows;  // (point x normal) / radius, normal
-    std::array<double, kChunk> residual;
-    std::size_t count = 0;
-};
-
-void sum_pairs(Pairs& pairs, ChunkSums& out) {
-    std::size_t padded = pairs.count;
-    for (; padded % kLanes != 0; ++padded) {
-        for (auto& row : pairs.rows) row[padded] = 0.0;
-        pairs.residual[padded] = 0.0;
-    }
-    std::array<Double4, kSums> total{};
-    for (std::size_t i = 0; i < padded; i += kLanes) {
-        std::array<Double4, 7> row;
-        for (std::size_t r = 0; r < 6; ++r) std::memcpy(&row[r], &pairs.rows[r][i], sizeof(row[r]));
-        std::memcpy(&row[6], &pairs.residual[i], sizeof(row[6]));
-        std::size_t s = 0;
-        for (std::size_t a = 0; a < 7; ++a) {
-            for (std::size_t b = a; b < 7; ++b) total[s++] += row[a] * row[b];
-        }
-    }
-    for (std::size_t s = 0; s < kSums; ++s) {
-        out.sums[s] = (total[s][0] + total[s][1]) + (total[s][2] + total[s][3]);
-    }
-    out.pairs = static_cast<int>(pairs.count);
-}
 
 // One alignment's state between steps.
 class Alignment {
@@ -99,27 +55,24 @@ class Alignment {
     // @return how far the step moves a point at the radius at most; < 0 with too few pairs.
     double step(std::size_t stride, IcpResult& result) {
         const std::size_t count = (source_.size() + stride - 1) / stride;
-        std::vector<ChunkSums> chunks((count + kChunk - 1) / kChunk);
+        std::vector<PlaneSums> chunks((count + PlanePairs::kMost - 1) / PlanePairs::kMost);
         const Vec3d pivot = result.T_target_source * center_;
         parallel_for(chunks.size(), [&](std::size_t c) {
-            const std::size_t last = std::min(count, (c + 1) * kChunk);
-            chunks[c] = chunk(c * kChunk, last, stride, result.T_target_source, pivot);
+            const std::size_t last = std::min(count, (c + 1) * PlanePairs::kMost);
+            chunks[c] = chunk(c * PlanePairs::kMost, last, stride, result.T_target_source, pivot);
         });
-        ChunkSums all;
-        for (const ChunkSums& chunk : chunks) {
-            for (std::size_t s = 0; s < kSums; ++s) all.sums[s] += chunk.sums[s];
-            all.pairs += chunk.pairs;
-        }
-        result.inliers = all.pairs;
-        if (all.pairs < kLeastPairs) return -1.0;
-        result.rms = std::sqrt(all.sums[kSums - 1] / all.pairs);
+        PlaneSums all;
+        for (const PlaneSums& chunk : chunks) all += chunk;
+        result.inliers = static_cast<int>(all.pairs());
+        if (result.inliers < kLeastPairs) return -1.0;
+        result.rms = std::sqrt(all.squares() / result.inliers);
         return apply(all, pivot, result.T_target_source);
     }
 
   private:
-    ChunkSums chunk(std::size_t first, std::size_t last, std::size_t stride,
+    PlaneSums chunk(std::size_t first, std::size_t last, std::size_t stride,
                     const Pose& T_target_source, const Vec3d& pivot) {
-        Pairs pairs;
+        PlanePairs pairs;
         const Mat3d R = T_target_source.linear();
         const Vec3d t = T_target_source.translation();
         const double scale = 1.0 / radius_;
@@ -145,17 +98,9 @@ class Alignment {
             const Vec3d normal = target_.normals[slot].cast<double>();
             if (!(normal.squaredNorm() > 0.5)) continue;  // also NaN
             const Vec3d turn = (moved - pivot).cross(normal) * scale;
-            const std::size_t at = pairs.count++;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const auto a = static_cast<Eigen::Index>(axis);
-                pairs.rows[axis][at] = turn[a];
-                pairs.rows[axis + 3][at] = normal[a];
-            }
-            pairs.residual[at] = normal.dot(moved - point(columns, slot).cast<double>());
+            pairs.add(turn, normal, normal.dot(moved - point(columns, slot).cast<double>()));
         }
-        ChunkSums sums;
-        sum_pairs(pairs, sums);
-        return sums;
+        return pairs.take();
     }
 
     static Vec3f point(const PointColumns& columns, std::uint32_t slot) {
@@ -163,15 +108,9 @@ class Alignment {
                 columns.coordinate(2)[slot]};
     }
 
-    double apply(const ChunkSums& all, const Vec3d& pivot, Pose& T_target_source) const {
-        Mat6d left;
-        Vec6d right;
-        std::size_t s = 0;
-        for (Eigen::Index a = 0; a < 6; ++a) {
-            for (Eigen::Index b = a; b < 6; ++b) left(a, b) = left(b, a) = all.sums[s++];
-            right[a] = -all.sums[s++];
-        }
-        const Eigen::SelfAdjointEigenSolver<Mat6d> solver(left);
+    double apply(const PlaneSums& all, const Vec3d& pivot, Pose& T_target_source) const {
+        const Eigen::SelfAdjointEigenSolver<Mat6d> solver(all.left());
+        const Vec6d right = all.right();
         const double least = kFreeRatio * solver.eigenvalues()[5];
         Vec6d step = Vec6d::Zero();
         for (Eigen::Index k = 0; k < 6; ++k) {

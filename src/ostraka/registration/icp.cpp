@@ -3,53 +3,88 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ostraka/base/error.hpp"
+#include "ostraka/registration/plane_pairs.hpp"
 
 namespace ostraka {
 namespace {
 
-using Vec6d = Eigen::Matrix<double, 6, 1>;
-using Mat6d = Eigen::Matrix<double, 6, 6>;
+constexpr std::size_t kBatch = 64;  // points whose partners are fetched together
+static_assert(PlanePairs::kMost % kBatch == 0);
 
-// Normal equations of one step, for a small turn about `pivot` and a shift.
-struct Equations {
-    Mat6d left = Mat6d::Zero();
-    Vec6d right = Vec6d::Zero();
-    double squares = 0.0;
-    int pairs = 0;
-};
+// The pairs of one step. What a point needs of memory is fetched while those before it are
+// computed: alone each would wait for it twice.
+class Matcher {
+  public:
+    Matcher(const SurfaceField& target, std::span<const Vec3f> source,
+            std::span<const Vec3f> source_normals, const IcpSettings& settings)
+        : target_(target),
+          source_(source),
+          source_normals_(source_normals),
+          cosine_(static_cast<float>(settings.min_cosine)) {}
 
-Equations assemble(const SurfaceField& target, std::span<const Vec3f> source,
-                   std::span<const Vec3f> source_normals, const Pose& T_target_source,
-                   const Vec3d& pivot, double distance, double min_cosine) {
-    const Mat3f R = T_target_source.linear().cast<float>();
-    const Vec3f t = T_target_source.translation().cast<float>();
-    const auto limit = static_cast<float>(distance);
-    const auto cosine = static_cast<float>(min_cosine);
-    Equations sums;
-    for (std::size_t i = 0; i < source.size(); ++i) {
-        const Vec3f moved = R * source[i] + t;
-        const std::uint32_t partner = target.nearest(moved);
-        if (partner == kNoIndex) continue;
-        const Vec3f& normal = target.normal(partner);
-        const Vec3f offset = moved - target.point(partner);
-        if (offset.squaredNorm() > limit * limit) continue;
-        if (normal.dot(R * source_normals[i]) < cosine) continue;
+    // Sums for a small turn about `pivot` and a shift.
+    PlaneSums match(const Pose& T_target_source, const Vec3d& pivot, double distance) {
+        R_ = T_target_source.linear().cast<float>();
+        t_ = T_target_source.translation().cast<float>();
+        squares_ = 0.0;
+        PlaneSums sums;
+        for (std::size_t first = 0; first < source_.size(); first += kBatch) {
+            add_batch(first, std::min(kBatch, source_.size() - first), pivot, distance);
+            if (pairs_.size() + kBatch > PlanePairs::kMost) sums += pairs_.take();
+        }
+        sums += pairs_.take();
+        return sums;
+    }
+    // Of the plane distances of the last match(), without weights.
+    double squares() const { return squares_; }
+
+  private:
+    void add_batch(std::size_t first, std::size_t count, const Vec3d& pivot, double distance) {
+        std::array<Vec3f, kBatch> moved;
+        std::array<std::uint32_t, kBatch> partner;
+        for (std::size_t i = 0; i < count; ++i) {
+            moved[i] = R_ * source_[first + i] + t_;
+            partner[i] = target_.cell_of(moved[i]);
+            target_.fetch_cell(partner[i]);
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            partner[i] = target_.nearest_in(partner[i]);
+            target_.fetch(partner[i]);
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            if (partner[i] != kNoIndex) {
+                add(moved[i], R_ * source_normals_[first + i], partner[i], pivot, distance);
+            }
+        }
+    }
+    void add(const Vec3f& moved, const Vec3f& turned, std::uint32_t partner, const Vec3d& pivot,
+             double distance) {
+        const auto limit = static_cast<float>(distance);
+        const Vec3f& normal = target_.normal(partner);
+        const Vec3f offset = moved - target_.point(partner);
+        if (offset.squaredNorm() > limit * limit || normal.dot(turned) < cosine_) return;
         const double residual = double{normal.dot(offset)};
         const double ratio = residual / distance;
-        const double weight = (1.0 - ratio * ratio) * (1.0 - ratio * ratio);
+        const double root = 1.0 - ratio * ratio;  // of Tukey's weight
         const Vec3d n = normal.cast<double>();
-        Vec6d row;
-        row << (moved.cast<double>() - pivot).cross(n), n;
-        sums.left.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-        sums.right -= weight * residual * row;
-        sums.squares += residual * residual;
-        ++sums.pairs;
+        const Vec3d turn = (moved.cast<double>() - pivot).cross(n);
+        pairs_.add(root * turn, root * n, root * residual);
+        squares_ += residual * residual;
     }
-    return sums;
-}
+
+    const SurfaceField& target_;
+    std::span<const Vec3f> source_;
+    std::span<const Vec3f> source_normals_;
+    float cosine_;
+    Mat3f R_;
+    Vec3f t_;
+    PlanePairs pairs_;
+    double squares_ = 0.0;
+};
 
 }  // namespace
 
@@ -71,19 +106,20 @@ IcpResult icp(const SurfaceField& target, std::span<const Vec3f> source,
     const double shrink =
         std::pow(settings.end_distance / settings.start_distance, 2.0 / settings.iterations);
     double distance = settings.start_distance;
+    Matcher matcher(target, source, source_normals, settings);
     for (int i = 0; i < settings.iterations; ++i) {
         const Vec3d pivot = result.T_target_source * source_center;
-        Equations sums = assemble(target, source, source_normals, result.T_target_source, pivot,
-                                  distance, settings.min_cosine);
-        result.inliers = sums.pairs;
-        if (sums.pairs < 6) return result;
-        result.rms = std::sqrt(sums.squares / sums.pairs);
+        const PlaneSums sums = matcher.match(result.T_target_source, pivot, distance);
+        const auto pairs = static_cast<double>(sums.pairs());
+        result.inliers = static_cast<int>(sums.pairs());
+        if (sums.pairs() < 6) return result;
+        result.rms = std::sqrt(matcher.squares() / pairs);
         // A little damping keeps what a plane or a sphere leaves free from drifting.
-        Vec6d damping = Vec6d::Constant(1e-6 * sums.pairs);
+        Vec6d damping = Vec6d::Constant(1e-6 * pairs);
         damping.head<3>() *= radius * radius;
-        sums.left.diagonal() += damping;
-        const Vec6d step =
-            Mat6d(sums.left.selfadjointView<Eigen::Lower>()).ldlt().solve(sums.right);
+        Mat6d left = sums.left();
+        left.diagonal() += damping;
+        const Vec6d step = left.ldlt().solve(sums.right());
         const Vec3d turn = step.head<3>();
         const double angle = turn.norm();
         Pose T_step = Pose::Identity();

@@ -16,10 +16,13 @@ constexpr int kRounds = 2;  // the first reaches every cell, the second mends mo
 
 }  // namespace
 
-SurfaceField::SurfaceField(const PointCloud& surface, double cell, double margin)
-    : surface_(surface) {
+SurfaceField::SurfaceField(const PointCloud& surface, double cell, double margin) {
     if (surface.empty() || surface.normals.size() != surface.size() || !(cell > 0.0)) {
         throw InvalidInput("surface field: needs points with normals and a positive cell");
+    }
+    elements_.reserve(surface.size());
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+        elements_.push_back({surface.points[i], surface.normals[i]});
     }
     Vec3f high = surface.points.front();
     low_ = high;
@@ -55,8 +58,8 @@ void SurfaceField::seed_cells(double cell, std::vector<float>& squared) {
                         static_cast<std::size_t>(size_[2]),
                     kNoIndex);
     squared.assign(nearest_.size(), std::numeric_limits<float>::infinity());
-    for (std::uint32_t i = 0; i < surface_.size(); ++i) {
-        const Vec3f at = (surface_.points[i] - low_) * inverse_cell_;
+    for (std::uint32_t i = 0; i < elements_.size(); ++i) {
+        const Vec3f at = (elements_[i].point - low_) * inverse_cell_;
         const auto x = std::clamp(static_cast<int>(at.x()), 0, size_[0] - 1);
         const auto y = std::clamp(static_cast<int>(at.y()), 0, size_[1] - 1);
         const auto z = std::clamp(static_cast<int>(at.z()), 0, size_[2] - 1);
@@ -100,7 +103,7 @@ void SurfaceField::sweep_row(int y, int z, int direction, double cell,
 void SurfaceField::offer(std::size_t own, std::uint32_t other, const Vec3f& middle,
                          std::vector<float>& squared) {
     if (other == kNoIndex || other == nearest_[own]) return;
-    const float distance = (surface_.points[other] - middle).squaredNorm();
+    const float distance = (elements_[other].point - middle).squaredNorm();
     if (distance < squared[own]) {
         squared[own] = distance;
         nearest_[own] = other;

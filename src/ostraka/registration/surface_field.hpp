@@ -3,6 +3,7 @@
 // hypotheses can be refined and scored at a few microseconds each.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -21,7 +22,10 @@ class SurfaceField {
 
     /// The index of a surface point about nearest to `point` (within a cell's diagonal), or
     /// kNoIndex outside the grid.
-    std::uint32_t nearest(const Vec3f& point) const {
+    std::uint32_t nearest(const Vec3f& point) const { return nearest_in(cell_of(point)); }
+    /// The same in two steps, for loops that fetch() what later steps need: the cell's number, or
+    /// kNoIndex outside the grid.
+    std::uint32_t cell_of(const Vec3f& point) const {
         const Vec3f at = (point - low_) * inverse_cell_;
         // Compared as floats: a NaN or a far point doesn't fit an int.
         const bool inside = at.x() >= 0.0F && at.y() >= 0.0F && at.z() >= 0.0F &&
@@ -29,14 +33,28 @@ class SurfaceField {
                             at.y() < static_cast<float>(size_[1]) &&
                             at.z() < static_cast<float>(size_[2]);
         if (!inside) return kNoIndex;
-        return nearest_[offset(static_cast<int>(at.x()), static_cast<int>(at.y()),
-                               static_cast<int>(at.z()))];
+        return static_cast<std::uint32_t>(
+            offset(static_cast<int>(at.x()), static_cast<int>(at.y()), static_cast<int>(at.z())));
     }
-    const Vec3f& point(std::uint32_t index) const { return surface_.points[index]; }
-    const Vec3f& normal(std::uint32_t index) const { return surface_.normals[index]; }
-    const PointCloud& surface() const { return surface_; }
+    std::uint32_t nearest_in(std::uint32_t cell) const {
+        return cell == kNoIndex ? kNoIndex : nearest_[cell];
+    }
+    void fetch_cell(std::uint32_t cell) const {
+        if (cell != kNoIndex) __builtin_prefetch(&nearest_[cell]);
+    }
+    void fetch(std::uint32_t index) const {
+        if (index != kNoIndex) __builtin_prefetch(&elements_[index]);
+    }
+    const Vec3f& point(std::uint32_t index) const { return elements_[index].point; }
+    const Vec3f& normal(std::uint32_t index) const { return elements_[index].normal; }
+    std::size_t size() const { return elements_.size(); }
 
   private:
+    // One line of the cache, as both are always needed.
+    struct alignas(32) Element {
+        Vec3f point;
+        Vec3f normal;
+    };
     std::size_t offset(int x, int y, int z) const {
         return static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x);
     }
@@ -48,7 +66,7 @@ class SurfaceField {
     void offer(std::size_t own, std::uint32_t other, const Vec3f& middle,
                std::vector<float>& squared);
 
-    PointCloud surface_;
+    std::vector<Element> elements_;
     Vec3f low_ = Vec3f::Zero();
     float inverse_cell_ = 1.0F;
     std::array<int, 3> size_ = {0, 0, 0};
