@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ostraka/recognition/hypothesis.hpp"
 
+#include <array>
+
 #include "ostraka/recognition/cell_check.hpp"
 #include "ostraka/recognition/merged_scan.hpp"
 
@@ -43,6 +45,46 @@ CellCheck check_free_cell(const Scan& scan, std::uint32_t cell, const SurfacePie
     return check;
 }
 
+// Pieces whose cells are fetched while those of others are found: each alone would wait for memory.
+class Batch {
+  public:
+    Batch(const Scan& scan, float tolerance, float largest)
+        : scan_(scan), tolerance_(tolerance), largest_(largest) {}
+
+    void add(const SurfacePiece& piece, Evidence& evidence) {
+        const std::uint32_t cell = scan_.ranges.cell_of(piece.point);
+        if (cell != kNoIndex) __builtin_prefetch(&scan_.ranges[cell]);
+        looked_at_[filled_++] = {piece, cell};
+        if (filled_ == looked_at_.size()) judge(evidence);
+    }
+    void judge(Evidence& evidence) {
+        for (std::size_t i = 0; i < filled_; ++i) fetch_point(looked_at_[i].cell);
+        for (std::size_t i = 0; i < filled_; ++i) {
+            const auto& [piece, cell] = looked_at_[i];
+            count(check_free_cell(scan_, cell, piece, tolerance_, largest_), tolerance_, evidence);
+        }
+        filled_ = 0;
+    }
+
+  private:
+    void fetch_point(std::uint32_t cell) const {
+        if (cell == kNoIndex) return;
+        const std::uint32_t point = scan_.ranges[cell].point;
+        if (point == kNoIndex) return;
+        __builtin_prefetch(&scan_.cloud.normals[point]);
+        __builtin_prefetch(&scan_.cloud.points[point]);
+    }
+    struct LookedAt {
+        SurfacePiece piece;
+        std::uint32_t cell = kNoIndex;
+    };
+    const Scan& scan_;
+    float tolerance_;
+    float largest_;
+    std::array<LookedAt, 64> looked_at_;
+    std::size_t filled_ = 0;
+};
+
 }  // namespace
 
 std::string_view source_name(HypothesisSource source) {
@@ -67,8 +109,8 @@ Evidence gather_evidence(const Scan& scan, const ModelProbe& probe, const Pose& 
     const auto limit = static_cast<float>(tolerance);
     const Vec3f up = scan.table ? Vec3f(scan.table->normal.cast<float>()) : Vec3f::Zero();
     const float ground = scan.table ? static_cast<float>(scan.table->offset) - 2.0F * limit : 0.0F;
-    const auto largest = static_cast<float>(probe.model().shape.diameter);
     Evidence evidence;
+    Batch batch(scan, limit, static_cast<float>(probe.model().shape.diameter));
     for (std::size_t i = 0; i < std::min(samples, probe.samples().size()); ++i) {
         if (!visible[i]) continue;
         ++evidence.visible;
@@ -77,9 +119,9 @@ Evidence gather_evidence(const Scan& scan, const ModelProbe& probe, const Pose& 
         const Vec3f ray = piece.point - eye;
         piece.range = ray.norm();
         piece.slope = -piece.normal.dot(ray) / piece.range;
-        count(check_free_cell(scan, scan.ranges.cell_of(piece.point), piece, limit, largest), limit,
-              evidence);
+        batch.add(piece, evidence);
     }
+    batch.judge(evidence);
     evidence.samples = static_cast<int>(samples);
     return evidence;
 }

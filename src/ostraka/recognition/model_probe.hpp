@@ -46,7 +46,10 @@ class ModelProbe {
     std::vector<FlatFace> faces_;
     double detail_ = 0.0;
     std::vector<Pose> turns_;
-    std::vector<Vec3f> directions_;                    // kProbeViews, model frame
+    static constexpr std::size_t kPaddedViews = (kProbeViews + 7) / 8 * 8;
+    // kProbeViews, model frame; x, y and z side by side, as the nearest is sought for each pose.
+    // Padded by zeros, which are never the nearest.
+    std::array<std::array<float, kPaddedViews>, 3> directions_{};
     std::vector<std::bitset<kProbeSamples>> visible_;  // one per direction
 };
 

@@ -67,13 +67,13 @@ struct Sample {
 Sample points_around(const Scan& scan, const MeshShape& shape, const Pose& T_scene_model,
                      double reach, std::size_t most) {
     const Vec3f center = Vec3d(T_scene_model * shape.center).cast<float>();
-    const double radius = shape.radius + reach;
-    const auto limit = static_cast<float>(radius * radius);
-    std::vector<std::uint32_t> around;
-    for (std::uint32_t i = 0; i < scan.cloud.size(); ++i) {
-        if (!scan.explained.empty() && scan.explained[i]) continue;
-        if ((scan.cloud.points[i] - center).squaredNorm() < limit) around.push_back(i);
-    }
+    std::vector<std::size_t> around;
+    scan.blocks.for_each_within(scan.cloud.points, center, static_cast<float>(shape.radius + reach),
+                                [&](std::size_t i) {
+                                    if (scan.explained.empty() || !scan.explained[i]) {
+                                        around.push_back(i);
+                                    }
+                                });
     const std::size_t stride = 1 + around.size() / most;
     Sample sample;
     for (std::size_t i = 0; i < around.size(); i += stride) {

@@ -184,7 +184,9 @@ Scan prepare_merged(const PointCloud& valid, double sampling, double model_diame
     if (!cloud.empty()) field.emplace(cloud, kMergedCell * sampling, kMergedMargin * sampling);
     std::vector<float> extents = extents_at(cloud, backdrop);
     const double deviation = cloud.empty() ? 0.0 : surface_roughness(cloud);
+    PointBlocks blocks(cloud.points);
     return {.cloud = std::move(cloud),
+            .blocks = std::move(blocks),
             .plane_extents = std::move(extents),
             .ranges = RangeMap({}, {}, {}, sampling),
             .merged = std::move(field),
@@ -223,7 +225,9 @@ Scan prepare_scan(const PointCloud& raw, double sampling, double model_diameter,
     std::vector<float> extents = extents_at(cloud, backdrop);
     const double cell = std::max(sampling, noise.pitch);
     RangeMap ranges(valid, sorted.wall_extents, cloud, cell);
+    PointBlocks blocks(cloud.points);
     Scan scan{.cloud = std::move(cloud),
+              .blocks = std::move(blocks),
               .plane_extents = std::move(extents),
               .ranges = std::move(ranges),
               .table = table_plane(table),

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "ostraka/cloud/point_blocks.hpp"
 #include "ostraka/recognition/range_map.hpp"
 #include "ostraka/recognition/settings.hpp"
 #include "ostraka/registration/surface_field.hpp"
@@ -20,6 +21,7 @@ struct TablePlane {
 struct Scan {
     PointCloud cloud;  ///< what may be objects: finite, about `sampling` apart, normals toward the
                        ///< viewpoint; without what is on a table or wall, or below the table
+    PointBlocks blocks;                  ///< of the cloud
     std::vector<float> plane_extents;    ///< of each point: how far the flat surface it is part of
                                          ///< extends; 0: it isn't part of a large one
     RangeMap ranges;                     ///< of the whole scan at full density; empty if merged
