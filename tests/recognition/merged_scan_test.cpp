@@ -30,6 +30,29 @@ Scan merged(const PointCloud& cloud, const std::vector<Vec3f>& viewpoints = {}) 
                         {.viewpoint_known = false, .viewpoints = viewpoints});
 }
 
+// What stands on a table, the table included, seen from two sides.
+PointCloud seen_from_two_sides(const std::vector<std::uint32_t>& chosen, SimulatedScene& first) {
+    TabletopSettings settings;
+    settings.spacing = 1.4;
+    settings.min_elevation = settings.max_elevation = 0.9;
+    std::vector<PlacedModel> placed;
+    first = simulate_tabletop(models(), chosen, 3, settings);
+    const Pose T_world_camera = first.T_camera_world.inverse();
+    for (const TrueObject& object : first.objects) {
+        placed.push_back({object.model, T_world_camera * object.T_scene_model});
+    }
+    SceneView other{.camera = first.camera, .T_camera_world = first.T_camera_world};
+    other.T_camera_world.rotate(Eigen::AngleAxisd(2.5, Vec3d::UnitZ()));
+    other.table_size = 8.0 * models().shapes[chosen[0]].diameter;
+    const SimulatedScene second = simulate_scene(models(), placed, other);
+    const Pose T_first_second = first.T_camera_world * other.T_camera_world.inverse();
+    PointCloud cloud = remove_invalid(first.cloud);
+    for (const Vec3f& point : remove_invalid(second.cloud).points) {
+        cloud.points.push_back((T_first_second * point.cast<double>()).cast<float>());
+    }
+    return cloud;
+}
+
 TEST(MergedScan, ItsTruthIsSeenAllAround) {
     for (const std::uint32_t model : {kCorner, kPlate}) {
         const Pose truth = some_pose(model + 3);
@@ -46,6 +69,43 @@ TEST(MergedScan, ItsTruthIsSeenAllAround) {
         EXPECT_LT(quick_score(gather_evidence(scan, probe(model), off, tolerance())),
                   quick_score(gather_evidence(scan, probe(model), truth, tolerance())));
     }
+}
+
+TEST(MergedScan, PointsDeepInsideContradict) {
+    const Pose truth = some_pose(5);
+    PointCloud cloud = all_around(kCorner, truth);
+    const auto solid = [&] {
+        const Scan scan = merged(cloud);
+        return verify(scan, probe(kCorner), {.model = kCorner, .T_scene_model = truth}, tolerance())
+            .solid;
+    };
+    EXPECT_EQ(solid(), 0U);
+    // Along the middle of the long arm, 10 from each side.
+    Random random(1);
+    for (int i = 0; i < 1500; ++i) {
+        const Vec3d inside(random.uniform(12.0, 68.0), random.uniform(9.0, 11.0),
+                           random.uniform(9.0, 11.0));
+        cloud.points.push_back((truth * inside).cast<float>());
+    }
+    EXPECT_GT(solid(), 15U);
+}
+
+TEST(MergedScan, NothingIsBelowTheTable) {
+    SimulatedScene first;
+    const PointCloud cloud = seen_from_two_sides({kPlate, kCorner}, first);
+    const Scan scan = prepare_scan(library(), cloud, {.viewpoint_known = false});
+    ASSERT_TRUE(scan.table.has_value());
+    const Pose& truth = first.objects[0].T_scene_model;
+    const auto sunk = [&](const Pose& T) {
+        return verify(scan, probe(kPlate), {.model = kPlate, .T_scene_model = T}, tolerance()).sunk;
+    };
+    EXPECT_EQ(sunk(truth), 0.0);
+    Pose below = truth;
+    below.translation() -= 200.0 * scan.table->normal;
+    EXPECT_EQ(sunk(below), 1.0);
+    const Evidence evidence = gather_evidence(scan, probe(kPlate), below, tolerance());
+    EXPECT_EQ(evidence.sunk, evidence.samples);
+    EXPECT_EQ(gather_evidence(scan, probe(kPlate), truth, tolerance()).sunk, 0);
 }
 
 TEST(MergedScan, OnlyAKnownViewpointContradicts) {
@@ -74,29 +134,6 @@ TEST(MergedScan, AnObjectIsRecognizedWhereverTheSensorsWere) {
     ASSERT_EQ(answer.objects.size(), 1U);
     EXPECT_EQ(answer.objects[0].model_index, kCorner);
     EXPECT_LT(pose_error(kCorner, truth, answer.objects[0].T_scene_model), 0.02);
-}
-
-// What stands on a table, the table included, seen from two sides.
-PointCloud seen_from_two_sides(const std::vector<std::uint32_t>& chosen, SimulatedScene& first) {
-    TabletopSettings settings;
-    settings.spacing = 1.4;
-    settings.min_elevation = settings.max_elevation = 0.9;
-    std::vector<PlacedModel> placed;
-    first = simulate_tabletop(models(), chosen, 3, settings);
-    const Pose T_world_camera = first.T_camera_world.inverse();
-    for (const TrueObject& object : first.objects) {
-        placed.push_back({object.model, T_world_camera * object.T_scene_model});
-    }
-    SceneView other{.camera = first.camera, .T_camera_world = first.T_camera_world};
-    other.T_camera_world.rotate(Eigen::AngleAxisd(2.5, Vec3d::UnitZ()));
-    other.table_size = 8.0 * models().shapes[chosen[0]].diameter;
-    const SimulatedScene second = simulate_scene(models(), placed, other);
-    const Pose T_first_second = first.T_camera_world * other.T_camera_world.inverse();
-    PointCloud cloud = remove_invalid(first.cloud);
-    for (const Vec3f& point : remove_invalid(second.cloud).points) {
-        cloud.points.push_back((T_first_second * point.cast<double>()).cast<float>());
-    }
-    return cloud;
 }
 
 TEST(MergedScan, ATableIsFoundAndCutAway) {

@@ -72,6 +72,34 @@ TEST(Verify, AnotherModelOrPlaceIsNotBelieved) {
     }
 }
 
+TEST(Verify, WhatIsOutOfSightCantBeBelowTheTableEither) {
+    // Of the plate upside down, with its pillars through the table, only the base is seen.
+    TriangleMesh mesh;
+    testing::add_box(mesh, Vec3f(-300, -300, -20), Vec3f(300, 300, 0));
+    testing::add_box(mesh, Vec3f(-45, -30, 0), Vec3f(45, 30, 8));
+    const SimulatedScene scene = scan_of(mesh, Vec3d(0, 0, 500), 0.0);
+    const Scan scan = prepared(scene);
+    ASSERT_TRUE(scan.table);
+    Pose T_mesh_plate = Pose::Identity();
+    T_mesh_plate.linear() = Vec3d(1.0, -1.0, -1.0).asDiagonal();
+    T_mesh_plate.translation() = Vec3d(-45.0, 30.0, 8.0);
+    const Pose T_scene_plate = scene.objects[0].T_scene_model * T_mesh_plate;
+    const Verified v = verify_at(scan, kPlate, T_scene_plate);
+    EXPECT_GT(v.visible_fraction, 0.9);
+    EXPECT_EQ(v.violation, 0U);
+    std::size_t below = 0;
+    const std::vector<Vec3f>& points = library().models[kPlate].surface.points;
+    for (const Vec3f& point : points) {
+        const Vec3d at = T_scene_plate * point.cast<double>();
+        const double height = scan.table->normal.dot(at) - scan.table->offset;
+        below += height < -2.0 * tolerance() ? 1 : 0;
+    }
+    const auto share = static_cast<double>(below) / static_cast<double>(points.size());
+    EXPECT_GT(share, 0.1);
+    EXPECT_NEAR(v.sunk, share, 0.03);
+    EXPECT_LT(v.confidence, 0.01);
+}
+
 TEST(Verify, OutOfSightThereIsNoSilhouette) {
     const SimulatedScene scene = alone(kCorner, 0);
     Pose behind = scene.objects[0].T_scene_model;

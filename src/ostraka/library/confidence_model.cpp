@@ -35,11 +35,11 @@ const ConfidenceModel& general_confidence() {
 }
 
 // Nothing is known of outlines. turned grows with the noise, and tells nothing that sharpness
-// doesn't; area nothing that visible doesn't.
+// doesn't; area nothing that visible doesn't. sunk is given, as above: no right report has any.
 const ConfidenceModel& merged_confidence() {
-    static const ConfidenceModel model{.weights = {-12.03, 2.95,  -4.97, 0.0, 6.44, 0.0, -0.4,
-                                                   4.58,   13.65, 0.0,   0.0, 0.0,  0.0, 0.0,
-                                                   0.0,    0.0,   0.0,   0.0, 0.0,  -1.0}};
+    static const ConfidenceModel model{.weights = {-11.7, 2.95,   -4.97, 0.0, 6.44, 0.0, -0.4,
+                                                   4.58,  13.65,  0.0,   0.0, 0.0,  0.0, 0.0,
+                                                   0.0,   -300.0, -0.6,  0.0, 0.0,  -1.0}};
     return model;
 }
 

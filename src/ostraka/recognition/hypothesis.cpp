@@ -4,6 +4,7 @@
 #include <array>
 
 #include "ostraka/recognition/cell_check.hpp"
+#include "ostraka/recognition/ground.hpp"
 #include "ostraka/recognition/merged_scan.hpp"
 
 namespace ostraka {
@@ -107,15 +108,14 @@ Evidence gather_evidence(const Scan& scan, const ModelProbe& probe, const Pose& 
     const Vec3f eye = scan.ranges.viewpoint();
     const auto& visible = probe.visible_from(R.transpose() * (eye - t));
     const auto limit = static_cast<float>(tolerance);
-    const Vec3f up = scan.table ? Vec3f(scan.table->normal.cast<float>()) : Vec3f::Zero();
-    const float ground = scan.table ? static_cast<float>(scan.table->offset) - 2.0F * limit : 0.0F;
+    const Ground ground(scan, tolerance);
     Evidence evidence;
     Batch batch(scan, limit, static_cast<float>(probe.model().shape.diameter));
     for (std::size_t i = 0; i < std::min(samples, probe.samples().size()); ++i) {
         if (!visible[i]) continue;
         ++evidence.visible;
         SurfacePiece piece{R * probe.samples()[i] + t, R * probe.normals()[i]};
-        if (scan.table && up.dot(piece.point) < ground) ++evidence.sunk;
+        if (ground.covers(piece.point)) ++evidence.sunk;
         const Vec3f ray = piece.point - eye;
         piece.range = ray.norm();
         piece.slope = -piece.normal.dot(ray) / piece.range;

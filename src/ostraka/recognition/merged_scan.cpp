@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ostraka/recognition/cell_check.hpp"
+#include "ostraka/recognition/ground.hpp"
 #include "ostraka/recognition/sharpness.hpp"
 
 namespace ostraka {
@@ -14,6 +15,9 @@ namespace {
 constexpr float kReach = 2.0F;             // sampling distances from a sample to the scan's point
 constexpr std::size_t kMaxSamples = 4000;  // of a model's surface that are verified
 constexpr float kBeside = 4.0F;            // sampling distances: points so near should be explained
+constexpr double kDeep = 4.0;              // thicknesses: points so far inside are no noise
+constexpr std::size_t kStray = 50;         // points on it, of which noise may put one inside
+constexpr float kInward = -0.8F;           // cosine between a normal and what lies behind it
 
 struct Placed {
     Mat3f R;
@@ -56,24 +60,30 @@ SurfaceCheck check_surface(const Scan& scan, const Vec3f& at, const Vec3f& norma
     return {{CellVerdict::support, off, agreement}, nearest};
 }
 
-// Points of the scan about the model's surface: those on it, ascending, and how many are not.
+// Points of the scan about the model's surface: those on it, ascending, how many are not, and how
+// many are deep inside.
 struct PointsAround {
     std::vector<std::uint32_t> on;
     std::size_t beside = 0;
+    std::size_t inside = 0;
 };
 
 PointsAround points_around(const Scan& scan, const ModelProbe& probe, const Pose& T_scene_model,
                            float tolerance) {
     const Placed to_model(T_scene_model.inverse(Eigen::Isometry));
     const auto reach = kBeside * static_cast<float>(scan.sampling);
+    const auto deep = static_cast<float>(kDeep * scan.thickness);
     PointsAround around;
     for (std::uint32_t i = 0; i < scan.cloud.size(); ++i) {
         const Vec3f at = to_model(scan.cloud.points[i]);
         const std::uint32_t nearest = probe.field().nearest(at);
         if (nearest == kNoIndex) continue;
         const Vec3f offset = at - probe.field().point(nearest);
-        if (offset.squaredNorm() > reach * reach) continue;
         const Vec3f& normal = probe.field().normal(nearest);
+        if (offset.squaredNorm() > reach * reach) {
+            if (normal.dot(offset) < std::min(kInward * offset.norm(), -deep)) ++around.inside;
+            continue;
+        }
         const bool on = std::abs(normal.dot(offset)) < 2.0F * tolerance &&
                         normal.dot(to_model.R * scan.cloud.normals[i]) > 0.0F;
         if (on) {
@@ -91,12 +101,14 @@ Evidence gather_merged_evidence(const Scan& scan, const ModelProbe& probe,
                                 const Pose& T_scene_model, double tolerance, std::size_t samples) {
     const Placed placed(T_scene_model);
     const auto limit = static_cast<float>(tolerance);
+    const Ground ground(scan, tolerance);
     Evidence evidence;
     const std::size_t count = std::min(samples, probe.samples().size());
     for (std::size_t i = 0; i < count; ++i) {
         ++evidence.visible;
-        const SurfaceCheck found =
-            check_surface(scan, placed(probe.samples()[i]), placed.R * probe.normals()[i], limit);
+        const Vec3f at = placed(probe.samples()[i]);
+        if (ground.covers(at)) ++evidence.sunk;
+        const SurfaceCheck found = check_surface(scan, at, placed.R * probe.normals()[i], limit);
         const CellVerdict verdict = found.check.verdict;
         const bool taken = verdict == CellVerdict::support && !scan.explained.empty() &&
                            scan.explained[found.point];
@@ -151,6 +163,8 @@ Verified verify_merged(const Scan& scan, const ModelProbe& probe, const Hypothes
     PointsAround around = points_around(scan, probe, hypothesis.T_scene_model, limit);
     result.cells = std::move(around.on);
     result.violation += around.beside / stride;
+    result.solid = around.inside - std::min(around.inside, result.cells.size() / kStray);
+    result.sunk = Ground(scan, tolerance).share(probe.samples(), hypothesis.T_scene_model);
     if (result.support == 0) return result;
     const auto support = static_cast<double>(result.support);
     result.inlier_rms = std::sqrt(squares / support);

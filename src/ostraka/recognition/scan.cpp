@@ -151,12 +151,6 @@ std::optional<TablePlane> table_plane(const FlatPiece* table) {
     return TablePlane{table->plane.normal, table->plane.offset};
 }
 
-// The plane of a ball that noise fills has any direction.
-double merged_normal_radius(const PointCloud& objects, double sampling) {
-    const double thickness = surface_thickness(objects, kThicknessRadius * sampling);
-    return std::max(kNormalRadius * sampling, kNormalThicknesses * thickness);
-}
-
 Scan prepare_merged(const PointCloud& valid, double sampling, double model_diameter,
                     const RecognitionSettings& settings) {
     const double wall_extent = kWallExtent * model_diameter;
@@ -170,7 +164,10 @@ Scan prepare_merged(const PointCloud& valid, double sampling, double model_diame
     const FlatPiece* table = backdrop.table(wall_extent);
     const PointCloud objects = sort_points(valid, backdrop, table, wall_extent).objects;
     PointCloud cloud = resample(objects, sampling);
-    cloud.normals = estimate_normals_within(cloud, merged_normal_radius(objects, sampling));
+    const double thickness = surface_thickness(objects, kThicknessRadius * sampling);
+    // The plane of a ball that noise fills has any direction.
+    cloud.normals = estimate_normals_within(
+        cloud, std::max(kNormalRadius * sampling, kNormalThicknesses * thickness));
     cloud = remove_invalid(cloud);
     if (backdrop.pieces.empty()) check_density(cloud, sampling);
     orient_normals(cloud);
@@ -194,7 +191,8 @@ Scan prepare_merged(const PointCloud& valid, double sampling, double model_diame
             .table = table_plane(table),
             .sampling = sampling,
             .cell = sampling,
-            .deviation = deviation};
+            .deviation = deviation,
+            .thickness = thickness};
 }
 
 }  // namespace

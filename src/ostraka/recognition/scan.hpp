@@ -35,6 +35,7 @@ struct Scan {
     double deviation = 0.0;  ///< expected of the cloud's points along the line of sight, from the
                              ///< noise that was measured; scan's unit; if merged, their
                              ///< surface_roughness()
+    double thickness = 0.0;  ///< of a merged scan: surface_thickness() of what is given
 };
 
 /// @param raw        at any density; NaN points are "no return"; viewpoint set.

@@ -7,6 +7,7 @@
 
 #include "ostraka/recognition/cell_check.hpp"
 #include "ostraka/recognition/contradiction.hpp"
+#include "ostraka/recognition/ground.hpp"
 #include "ostraka/recognition/merged_scan.hpp"
 
 namespace ostraka {
@@ -40,7 +41,6 @@ struct Sums {
     double squares = 0.0;
     double turned = 0.0;
     Mat3d normals = Mat3d::Zero();
-    std::size_t sunk = 0;
 };
 
 void count(const CellCheck& check, const Vec3d& normal, Verified& result, Sums& sums) {
@@ -76,7 +76,6 @@ void add_shares(const Sums& sums, Verified& result) {
     if (result.silhouette == 0) return;
     const auto silhouette = static_cast<double>(result.silhouette);
     result.visible_fraction = static_cast<double>(result.support) / silhouette;
-    result.sunk = static_cast<double>(sums.sunk) / silhouette;
     if (result.support == 0) return;
     const auto support = static_cast<double>(result.support);
     result.inlier_rms = std::sqrt(sums.squares / support);
@@ -122,9 +121,6 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
         if (!hits[i].hit()) continue;
         const double range = hits[i].distance;
         const Vec3d at = eye + range * scan.ranges.direction(window[i]);
-        if (scan.table && scan.table->normal.dot(at) < scan.table->offset - 2.0 * tolerance) {
-            ++sums.sunk;
-        }
         const Vec3d normal = T_scene_model.linear() * normal_at(probe, hits[i], T_model_scene * at);
         const SurfacePiece piece{at.cast<float>(), normal.cast<float>(), static_cast<float>(range),
                                  static_cast<float>(-normal.dot(scan.ranges.direction(window[i])))};
@@ -139,6 +135,8 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
         if (check.verdict == CellVerdict::support) result.cells.push_back(window[i]);
     }
     add_shares(sums, result);
+    // What is out of sight, too.
+    result.sunk = Ground(scan, tolerance).share(probe.samples(), T_scene_model);
     result.expected_rms = expected_deviation(scan, probe);
     result.noise = result.expected_rms / scan.sampling;
     const double cell_area = scan.cell * scan.cell;

@@ -23,7 +23,8 @@ struct Verified {
     std::size_t solid = 0;       ///< of violation and backdrop: solid_contradiction()
     std::size_t blank = 0;       ///< of missing: solid_blank()
     std::size_t hollow = 0;      ///< in holes of the scan's surface: hollow_contradiction()
-    double sunk = 0.0;           ///< share of the silhouette that would be below the table
+    double sunk = 0.0;           ///< share of the surface that would be below the table, seen or
+                                 ///< not
     OutlineEvidence outline;     ///< whether the scan's surface ends where the model does
     double inlier_rms = 0.0;     ///< of the distances of supporting cells, along the normal; scan's
                                  ///< unit
