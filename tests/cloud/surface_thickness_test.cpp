@@ -32,6 +32,18 @@ TEST(SurfaceThickness, OfAPlaneIsItsNoise) {
     }
 }
 
+// A million points in one place, which would each look at all others: this takes a blink, or
+// minutes.
+TEST(SurfaceThickness, OfManyPointsInOnePlaceIsTheirNoise) {
+    Random random(2);
+    PointCloud cloud;
+    for (int i = 0; i < 1'000'000; ++i) {
+        cloud.points.push_back(
+            Vec3d(random.uniform(), random.uniform(), 0.05 * random.normal()).cast<float>());
+    }
+    EXPECT_NEAR(surface_thickness(cloud, 4.0), 0.05, 0.005);
+}
+
 // Points that fill a ball of radius r have a variance of r^2 / 5 in each direction.
 TEST(SurfaceThickness, OfWhatFillsSpaceIsTheBalls) {
     Random random(9);
