@@ -74,20 +74,20 @@ TEST(MergedScan, ItsTruthIsSeenAllAround) {
 TEST(MergedScan, PointsDeepInsideContradict) {
     const Pose truth = some_pose(5);
     PointCloud cloud = all_around(kCorner, truth);
-    const auto solid = [&] {
+    const auto inside = [&] {
         const Scan scan = merged(cloud);
         return verify(scan, probe(kCorner), {.model = kCorner, .T_scene_model = truth}, tolerance())
-            .solid;
+            .inside;
     };
-    EXPECT_EQ(solid(), 0U);
+    EXPECT_EQ(inside(), 0U);
     // Along the middle of the long arm, 10 from each side.
     Random random(1);
     for (int i = 0; i < 1500; ++i) {
-        const Vec3d inside(random.uniform(12.0, 68.0), random.uniform(9.0, 11.0),
-                           random.uniform(9.0, 11.0));
-        cloud.points.push_back((truth * inside).cast<float>());
+        const Vec3d at(random.uniform(12.0, 68.0), random.uniform(9.0, 11.0),
+                       random.uniform(9.0, 11.0));
+        cloud.points.push_back((truth * at).cast<float>());
     }
-    EXPECT_GT(solid(), 15U);
+    EXPECT_GT(inside(), 15U);
 }
 
 TEST(MergedScan, NothingIsBelowTheTable) {

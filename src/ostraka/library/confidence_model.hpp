@@ -27,12 +27,13 @@ enum class Feature : std::uint8_t {
     joined,     ///< share of the outline where something in front begins at the surface
     fenced,     ///< share of the outline, beyond a half, along which something nearer begins
     ended,      ///< logarithm of the cells of outline where the scan ends, too
-    sunk,       ///< share that would be below the table
-    solid,      ///< logarithm of what contradicts in one piece, as cells of the range map
-    blank,      ///< logarithm of what was not measured in one piece, as cells of the range map
-    hollow,     ///< logarithm of cells of holes that the model lacks
-    rival,      ///< logarithm of 1 + the odds that other models have to be what explains the same
-    count       // how many there are
+    sunk,       ///< share of the surface that would be below the table
+    solid,   ///< logarithm of what contradicts in one piece, as cells of the range map, or of the
+             ///< points of a merged scan deep inside
+    blank,   ///< logarithm of what was not measured in one piece, as cells of the range map
+    hollow,  ///< logarithm of cells of holes that the model lacks
+    rival,   ///< logarithm of 1 + the odds that other models have to be what explains the same
+    count    // how many there are
 };
 inline constexpr std::size_t kFeatures = static_cast<std::size_t>(Feature::count);
 using Features = std::array<double, kFeatures>;

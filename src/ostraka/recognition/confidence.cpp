@@ -45,7 +45,7 @@ Features features_of(const Verified& v) {
     set(Feature::fenced, std::max(0.0, v.outline.fenced - kOftenFenced));
     set(Feature::ended, std::log10(1.0 + v.outline.ended));
     set(Feature::sunk, v.sunk);
-    set(Feature::solid, std::log10(1.0 + static_cast<double>(v.solid)));
+    set(Feature::solid, std::log10(1.0 + static_cast<double>(v.solid + v.inside)));
     set(Feature::blank, std::log10(1.0 + static_cast<double>(v.blank)));
     set(Feature::hollow, std::log10(1.0 + static_cast<double>(v.hollow)));
     return features;

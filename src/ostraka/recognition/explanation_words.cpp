@@ -201,6 +201,7 @@ std::string words_for(std::string_view topic, const Explanation& one, bool again
     }
     if (topic == "contradiction") {
         if (!against) return "nothing contradicts it but at edges";
+        if (v.inside > 0) return fmt::format("{} points of the scan lie inside it", v.inside);
         const std::string together =
             v.solid > 0 ? fmt::format(", {} of them inside one piece", v.solid) : "";
         return fmt::format(

@@ -8,9 +8,8 @@ namespace ostraka {
 /// What is below the table, where no object can be. Nothing if the scan shows no table.
 class Ground {
   public:
-    /// @param tolerance  that poses and tables are known to, scan's unit: within two of it below
-    /// the
-    ///                   table is not below.
+    /// @param tolerance  of agreement, scan's unit: up to two of it below the table's plane counts
+    ///                   as on it.
     Ground(const Scan& scan, double tolerance) {
         if (!scan.table) return;
         up_ = scan.table->normal.cast<float>();

@@ -163,7 +163,7 @@ Verified verify_merged(const Scan& scan, const ModelProbe& probe, const Hypothes
     PointsAround around = points_around(scan, probe, hypothesis.T_scene_model, limit);
     result.cells = std::move(around.on);
     result.violation += around.beside / stride;
-    result.solid = around.inside - std::min(around.inside, result.cells.size() / kStray);
+    result.inside = around.inside - std::min(around.inside, result.cells.size() / kStray);
     result.sunk = Ground(scan, tolerance).share(probe.samples(), hypothesis.T_scene_model);
     if (result.support == 0) return result;
     const auto support = static_cast<double>(result.support);

@@ -110,6 +110,7 @@ Verified verify(const Scan& scan, const ModelProbe& probe, const Hypothesis& hyp
     const std::vector<std::uint32_t> window =
         scan.ranges.cells_around(T_scene_model * shape.center, shape.radius);
     std::vector<Vec3d> rays;
+    rays.reserve(window.size());
     for (const std::uint32_t cell : window) {
         rays.push_back(T_model_scene.linear() * scan.ranges.direction(cell));
     }

@@ -21,6 +21,8 @@ struct Verified {
     std::size_t missing = 0;     ///< of these: nothing was measured
     std::size_t unsure = 0;      ///< of these: nothing can be said
     std::size_t solid = 0;       ///< of violation and backdrop: solid_contradiction()
+    std::size_t inside = 0;      ///< points of a merged scan deep inside, beyond what noise puts
+                                 ///< there; 0 unless merged
     std::size_t blank = 0;       ///< of missing: solid_blank()
     std::size_t hollow = 0;      ///< in holes of the scan's surface: hollow_contradiction()
     double sunk = 0.0;           ///< share of the surface that would be below the table, seen or

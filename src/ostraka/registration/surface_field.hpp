@@ -33,8 +33,7 @@ class SurfaceField {
                             at.y() < static_cast<float>(size_[1]) &&
                             at.z() < static_cast<float>(size_[2]);
         if (!inside) return kNoIndex;
-        return static_cast<std::uint32_t>(
-            offset(static_cast<int>(at.x()), static_cast<int>(at.y()), static_cast<int>(at.z())));
+        return offset(static_cast<int>(at.x()), static_cast<int>(at.y()), static_cast<int>(at.z()));
     }
     std::uint32_t nearest_in(std::uint32_t cell) const {
         return cell == kNoIndex ? kNoIndex : nearest_[cell];
@@ -55,8 +54,8 @@ class SurfaceField {
         Vec3f point;
         Vec3f normal;
     };
-    std::size_t offset(int x, int y, int z) const {
-        return static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x);
+    std::uint32_t offset(int x, int y, int z) const {
+        return static_cast<std::uint32_t>((z * size_[1] + y) * size_[0] + x);
     }
     Vec3f center(int x, int y, int z, double cell) const;
     // `squared`: of each cell, the distance from its center to its point.
