@@ -30,7 +30,7 @@ std::size_t overlap(const Indices& a, const Indices& b) {
 }
 
 bool same(const Indices& a, const Indices& b, double least) {
-    const auto [small, large] = std::minmax(a.size(), b.size());
+    const auto [small, large] = std::minmax({a.size(), b.size()});
     if (static_cast<double>(small) <= least * static_cast<double>(large)) return false;
     const std::size_t common = overlap(a, b);
     const std::size_t all = a.size() + b.size() - common;
