@@ -12,9 +12,8 @@
 namespace ostraka {
 namespace {
 
-constexpr std::size_t kPoints = 2000;  // that are looked at
-constexpr std::size_t kMostInCell =
-    500;  // points in a cube of the balls' radius; more than scans have
+constexpr std::size_t kPoints = 2000;     // that are looked at
+constexpr std::size_t kMostInCell = 500;  // of a grid as wide as the radius; scans have fewer
 constexpr double kNoPlane = -1.0;
 
 double deviation_from_plane(const std::vector<Vec3f>& points, const Vec3f& at,

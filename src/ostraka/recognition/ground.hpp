@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "ostraka/recognition/scan.hpp"
 
 namespace ostraka {

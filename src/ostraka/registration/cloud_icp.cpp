@@ -120,13 +120,8 @@ class Alignment {
         }
         const Vec3d turn = step.head<3>() / radius_;
         const Vec3d shift = step.tail<3>();
-        const double angle = turn.norm();
-        Pose T_step = Pose::Identity();
-        T_step.translate(Eigen::Vector3d(pivot + shift));
-        if (angle > 0.0) T_step.rotate(Eigen::AngleAxisd(angle, Eigen::Vector3d(turn / angle)));
-        T_step.translate(Eigen::Vector3d(-pivot));
-        T_target_source = T_step * T_target_source;
-        return angle * radius_ + shift.norm();
+        T_target_source = step_about(pivot, turn, shift) * T_target_source;
+        return turn.norm() * radius_ + shift.norm();
     }
 
     const IcpTarget::Implementation& target_;

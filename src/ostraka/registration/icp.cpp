@@ -121,14 +121,10 @@ IcpResult icp(const SurfaceField& target, std::span<const Vec3f> source,
         left.diagonal() += damping;
         const Vec6d step = left.ldlt().solve(sums.right());
         const Vec3d turn = step.head<3>();
-        const double angle = turn.norm();
-        Pose T_step = Pose::Identity();
-        T_step.translate(Vec3d(pivot + step.tail<3>()));
-        if (angle > 0.0) T_step.rotate(Eigen::AngleAxisd(angle, turn / angle));
-        T_step.translate(Vec3d(-pivot));
-        result.T_target_source = T_step * result.T_target_source;
+        const Vec3d shift = step.tail<3>();
+        result.T_target_source = step_about(pivot, turn, shift) * result.T_target_source;
         result.iterations = i + 1;
-        const double moved = angle * radius + step.tail<3>().norm();
+        const double moved = turn.norm() * radius + shift.norm();
         const bool finest = distance <= settings.end_distance;
         if (finest && moved < settings.convergence * settings.end_distance) {
             result.converged = true;

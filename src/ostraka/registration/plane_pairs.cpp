@@ -68,6 +68,15 @@ PlaneSums& PlaneSums::operator+=(const PlaneSums& other) {
     return *this;
 }
 
+Pose step_about(const Vec3d& pivot, const Vec3d& turn, const Vec3d& shift) {
+    const double angle = turn.norm();
+    Pose T_step = Pose::Identity();
+    T_step.translate(Vec3d(pivot + shift));
+    if (angle > 0.0) T_step.rotate(Eigen::AngleAxisd(angle, turn / angle));
+    T_step.translate(Vec3d(-pivot));
+    return T_step;
+}
+
 PlaneSums PlanePairs::take() {
     PlaneSums result;
     result.pairs_ = count_;

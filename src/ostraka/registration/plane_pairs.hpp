@@ -31,6 +31,9 @@ class PlaneSums {
     std::size_t pairs_ = 0;
 };
 
+/// A turn about `pivot` by turn's length, in radians, about its direction; then a shift.
+Pose step_about(const Vec3d& pivot, const Vec3d& turn, const Vec3d& shift);
+
 /// Pairs side by side, so that several are summed at a time; the same bits on every machine.
 class PlanePairs {
   public:
